@@ -133,7 +133,7 @@ class RoadFrame:
         self.lights = tuple(self._lane_lights(road))
         self._partings = self._roads.partings()
         self.has_rails = any("level_crossing" in lanelet.types for lanelet in lanelets)
-        self.one_way = all(among.surroundings.directions(lanelet)[0] for lanelet in lanelets)
+        self.one_way = all(among.surroundings.directions(lanelet.id)[0] for lanelet in lanelets)
         turns = [own.turned(*ends, aside_m=1.0) for own in roads for ends in own.junctions]
         self.goes_straight = all(abs(turn) < _BENDS for turn in turns)
         at = np.abs(origin.lanes.s - origin.ego_s) <= _FAR_M

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from rulec.extraction.context_arrays import EgosOnRoad, drives_context
 from rulec.extraction.drives import Drives
-from rulec.extraction.traces.lost_drives import made_apart
+from rulec.extraction.kept_results import KeepsResults, kept
+from rulec.extraction.traces.lost_drives import made_together
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.traces.to_trace import TraceWriter, to_traces
 from rulec.extraction.tracks.at_junctions.junction_passages import junction_passages
@@ -26,7 +27,6 @@ from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import ObjectTypes, tracks_of
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Participant, Recording, Side
-from rulec.trace.end_to_end import UnlikeDrivesError
 
 MOST_CELLS = 1 << 18
 """Drives are laid end to end up to this many cells; fewer take more calls, more need more
@@ -86,7 +86,7 @@ class _Stretch:
     columns: slice
 
 
-class _Batch:
+class _Batch(KeepsResults):
     """Candidates that are processed together."""
 
     def __init__(
@@ -118,8 +118,6 @@ class _Batch:
                 if road is not None:
                     own = self._rows[road]
                     own[row] = len(own)
-        self._places: dict[DrivenRoad, RoadPlaces] = {}
-        self._n_off: dict[DrivenRoad, NDArray[intp]] = {}
 
     def _road(self, stretch: RouteStretch) -> DrivenRoad | None:
         found = self._among.map.road(stretch.route)
@@ -127,20 +125,17 @@ class _Batch:
 
     def places(self, road: DrivenRoad, row: int) -> tuple[RoadPlaces, int]:
         """The places on a road of all candidates that drive there, and a candidate's row there."""
-        rows = self._rows[road]
-        if road not in self._places:
-            members = np.fromiter(rows, dtype=intp, count=len(rows))
-            self._places[road] = self._drives.places_of(road, members)
-        return self._places[road], rows[row]
+        return self._places(road), self._rows[road][row]
 
-    def _off_road(self, road: DrivenRoad, row: int) -> NDArray[intp]:
-        """In how many columns before each a candidate has no place on the road."""
-        places, own = self.places(road, row)
-        if road not in self._n_off:
-            off = np.isnan(places.extents.s).cumsum(axis=1)
-            self._n_off[road] = np.pad(off, ((0, 0), (1, 0)))
-        n_off: NDArray[intp] = self._n_off[road][own]
-        return n_off
+    @kept
+    def _places(self, road: DrivenRoad) -> RoadPlaces:
+        rows = self._rows[road]
+        return self._drives.places_of(road, np.fromiter(rows, dtype=intp, count=len(rows)))
+
+    @kept
+    def _off_road(self, road: DrivenRoad) -> NDArray[intp]:
+        """In how many columns before each the candidates, a row each, have no place on the road."""
+        return np.pad(np.isnan(self._places(road).extents.s).cumsum(axis=1), ((0, 0), (1, 0)))
 
     def drives(self, *, bare: bool) -> Iterator[Block]:
         """The drives of each candidate, ordered by road, in blocks.
@@ -195,7 +190,7 @@ class _Batch:
         if road is None or road.meets_itself or stretch.against:
             return None
         columns = slice(stretch.first, stretch.last + 1)
-        n_off = self._off_road(road, row)
+        n_off = self._off_road(road)[self._rows[road][row]]
         if n_off[columns.stop] > n_off[columns.start]:
             return None
         ego = self.surroundings.tracks.participants[row].id
@@ -226,16 +221,13 @@ class _Batch:
         context = drives_context(among.surroundings, among.places(road), among.side, egos)
         ids = [self.surroundings.tracks.participants[stretch.row].id for stretch in stretches]
         names = [stretch.name for stretch in stretches]
-        drives: Sequence[Drive | NoDrive]
-        try:
-            drives = to_traces(context, ids, names, writer)
-        except UnlikeDrivesError:
-            return {}
-        except Exception as problem:
-            drives = made_apart(names, lambda number: self._alone(stretches[number]), problem)
-        return {
-            (stretch.row, stretch.number): x for stretch, x in zip(stretches, drives, strict=True)
-        }
+        drives = made_together(
+            names,
+            lambda: to_traces(context, ids, names, writer),
+            lambda number: self._alone(stretches[number]),
+        )
+        keys = [(stretch.row, stretch.number) for stretch in stretches]
+        return dict(zip(keys, drives, strict=True)) if drives else {}
 
     def _alone(self, stretch: _Stretch) -> Drive | NoDrive:
         n_others = len(self._among.surroundings.tracks.participants)
@@ -249,7 +241,7 @@ class _Batch:
         return joined, len(among.surroundings.tracks.participants)
 
 
-class CandidateDrives:
+class CandidateDrives(KeepsResults):
     """The drives of candidates for one vehicle, the last participant of a ``recording``.
 
     The others do not see the candidates, nor do candidates see each other: each drive is the one of
@@ -273,13 +265,11 @@ class CandidateDrives:
         prepared = self.map, self.matching, self.surroundings
         self._drives = Drives(recording, side, thresholds, prepared=prepared)
         self._everybody = np.arange(len(tracks.participants))
-        self._places: dict[DrivenRoad, RoadPlaces] = {}
 
+    @kept
     def places(self, road: DrivenRoad) -> RoadPlaces:
         """The places of the others on a road."""
-        if road not in self._places:
-            self._places[road] = self._drives.places_of(road, self._everybody)
-        return self._places[road]
+        return self._drives.places_of(road, self._everybody)
 
     def of(
         self, candidates: Sequence[Participant], writer: TraceWriter

@@ -12,6 +12,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
+from rulec.extraction.kept_results import kept
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.lane_sets import LaneSets, edges, is_in
 from rulec.extraction.tracks.road_extents import RoadExtents
@@ -29,6 +30,8 @@ from rulec.trace.plain_arrays import distinct, medians
 _ENOUGH_TRACKS = 10
 _ENOUGH_IN_LANE = 3
 _LEAST_OFFSET_M = 0.15
+
+_OF_STATES = ("relevant", "in_sight", "lanes_there", "elsewhere")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -125,41 +128,34 @@ class DriveContext:
 
     def one(self, number: int) -> DriveContext:
         """One of the drives by itself, with the same rows."""
-        if self.is_one:
-            return self
-        if number not in self._ones:
-            columns, rows = self.spans.slices[number], np.arange(len(self.relevant))
-            surroundings, row = self.surroundings, int(self.ego.rows[number])
-            if self.alone is not None:
-                surroundings, row = self.alone(number)
-            own = self.ego.part(np.zeros(1, dtype=intp), columns)
-            self._ones[number] = replace(
-                self,
-                spans=EndToEnd.of_one(columns.stop - columns.start),
-                steps=self.steps[columns],
-                own=surroundings,
-                ego=own.seen_as(
-                    self.ego.participants[number : number + 1],
-                    surroundings.tracks.types,
-                    np.array([row]),
-                ),
-                ego_extents=self.ego_extents.part(np.zeros(1, dtype=intp), columns),
-                tracks=self.tracks.part(rows, columns),
-                extents=self.extents.part(rows, columns),
-                relevant=self.relevant[:, columns],
-                in_sight=self.in_sight[:, columns],
-                lanes_there=self.lanes_there[:, columns],
-                lanes_within=tuple(sets[:, columns] for sets in self.lanes_within),
-                elsewhere=self.elsewhere[:, columns],
-                surroundings=surroundings,
-                alone=None,
-                computed={},
-            )
-        return self._ones[number]
+        return self if self.is_one else self._one(number)
 
-    @cached_property
-    def _ones(self) -> dict[int, DriveContext]:
-        return {}
+    @kept
+    def _one(self, number: int) -> DriveContext:
+        columns, rows = self.spans.slices[number], np.arange(len(self.relevant))
+        surroundings, row = self.surroundings, int(self.ego.rows[number])
+        if self.alone is not None:
+            surroundings, row = self.alone(number)
+        own = self.ego.part(np.zeros(1, dtype=intp), columns)
+        return replace(
+            self,
+            spans=EndToEnd.of_one(columns.stop - columns.start),
+            steps=self.steps[columns],
+            own=surroundings,
+            ego=own.seen_as(
+                self.ego.participants[number : number + 1],
+                surroundings.tracks.types,
+                np.array([row]),
+            ),
+            ego_extents=self.ego_extents.part(np.zeros(1, dtype=intp), columns),
+            tracks=self.tracks.part(rows, columns),
+            extents=self.extents.part(rows, columns),
+            lanes_within=tuple(sets[:, columns] for sets in self.lanes_within),
+            surroundings=surroundings,
+            alone=None,
+            computed={},
+            **{name: getattr(self, name)[:, columns] for name in _OF_STATES},
+        )
 
     def ego_is(self, kind: str) -> Flags:
         """Mask of the states in which ego has an object type or one of its subtypes."""

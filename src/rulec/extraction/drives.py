@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Flags
 from rulec.extraction.context_arrays import EgosOnRoad, drives_context
+from rulec.extraction.kept_results import KeepsResults, kept
 from rulec.extraction.recording_parts import egos_of
-from rulec.extraction.traces.lost_drives import lost_drive, made_apart
+from rulec.extraction.traces.lost_drives import lost_drive, made_together
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.traces.to_trace import ALL_SIGNALS, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad
@@ -37,7 +38,6 @@ from rulec.extraction.tracks.tracks import Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.garbage_collection import no_garbage_collection
 from rulec.recordings.recording import Lanelet, Recording, Side
-from rulec.trace.end_to_end import UnlikeDrivesError
 
 FEWEST_STATES = 2
 
@@ -85,7 +85,7 @@ class Matching(Protocol):
         """The matched stretches of a participant."""
 
 
-class Drives:
+class Drives(KeepsResults):
     """The drives of a recording, with a shared layout of each road.
 
     ``prepared`` are the map, the matched lanelets and the surroundings, if already known.
@@ -117,7 +117,6 @@ class Drives:
         self._parts: dict[DrivenRoad, _PlacesInPart] = {}
         self._expected = expected
         self._ready: dict[_Key, Drive | NoDrive] = {}
-        self._routes: dict[MatchedStretch, tuple[RouteStretch, ...]] = {}
 
     def egos(self) -> tuple[str, ...]:
         """The participants that move and steer, in the order of the file."""
@@ -160,12 +159,10 @@ class Drives:
         ]
         return sorted((*along, *self._against.get(row, ())), key=lambda stretch: stretch.first)
 
+    @kept
     def _routes_of(self, matched: MatchedStretch) -> tuple[RouteStretch, ...]:
         # Many candidates of one vehicle drive along the same lanelets at the same times
-        if matched not in self._routes:
-            found = route_stretches(self.recording, matched, self._map.graph)
-            self._routes[matched] = tuple(found)
-        return self._routes[matched]
+        return tuple(route_stretches(self.recording, matched, self._map.graph))
 
     @cached_property
     def _against(self) -> dict[int, list[RouteStretch]]:
@@ -273,16 +270,13 @@ class Drives:
         self, places: RoadPlaces, members: Mapping[_Key, tuple[str, int, slice]]
     ) -> dict[_Key, Drive | NoDrive]:
         """Drives along one road, from names, rows and columns; empty if their signals differ."""
-        drives: Sequence[Drive | NoDrive]
         egos = [*members.values()]
-        try:
-            drives = self._made(places, egos)
-        except UnlikeDrivesError:
-            return {}
-        except Exception as problem:
-            names = [name for name, *_ in egos]
-            drives = made_apart(names, lambda k: self._made(places, [egos[k]])[0], problem)
-        return dict(zip(members, drives, strict=True))
+        drives = made_together(
+            [name for name, *_ in egos],
+            lambda: self._made(places, egos),
+            lambda k: self._made(places, [egos[k]])[0],
+        )
+        return dict(zip(members, drives, strict=True)) if drives else {}
 
     def _there(self, places: RoadPlaces, row: int, columns: slice) -> tuple[int, slice] | None:
         """A drive's row and columns in ``places``; None if they lack it or it leaves the road."""

@@ -39,7 +39,9 @@ def _oncoming_clear(context: DriveContext) -> WorldSignal:
     """
     limits = context.thresholds
     own_lanes = (travel_lanes(context).sum(axis=1) > 1) & ~_beyond_own_lanes(context)
-    one_way = own_lanelets(context).flags(lambda at: context.surroundings.directions(at)[0] is True)
+    one_way = own_lanelets(context).flags(
+        lambda at: context.surroundings.directions(at.id)[0] is True
+    )
     alone = own_lanes | one_way
     own = np.maximum(context.ego_extents.along[0], 0.0)
     steps = context.steps_in(limits.overtaking_s)

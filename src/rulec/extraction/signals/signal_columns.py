@@ -106,16 +106,7 @@ def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
         names = dict.fromkeys(name for own in columns for name in own)
         return {name: np.concatenate([own[name] for own in columns], axis=-1) for name in names}
 
-    bounds = {
-        name: (low, high)
-        for name in parts[0].bounds
-        for low, high in [
-            [
-                np.concatenate(ends, axis=-1)
-                for ends in zip(*[x.bounds[name] for x in parts], strict=True)
-            ]
-        ]
-    }
+    bounds = {name: (low, high) for name, (low, high) in joined("bounds").items()}
     world, about, unknown, whom = map(joined, ("world", "about", "unknown", "whom"))
     only, texts = parts[0].only, parts[0].texts
     return SignalColumns(world, about, unknown, only=only, bounds=bounds, texts=texts, whom=whom)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from rulec.diagnostics.fault_messages import fault_of
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
+from rulec.trace.end_to_end import UnlikeDrivesError
 
 
 def lost_drive(ego: str, problem: Exception) -> NoDrive:
@@ -15,24 +16,32 @@ def lost_drive(ego: str, problem: Exception) -> NoDrive:
     return NoDrive(ego, fault.diagnostics[0].message, fault)
 
 
-def made_apart(
-    names: Iterable[str], make: Callable[[int], Drive | NoDrive], problem: Exception
-) -> list[Drive | NoDrive]:
-    """Drives that cannot be made together, each made by its number.
+def made_together(
+    names: Iterable[str],
+    make_all: Callable[[], Sequence[Drive]],
+    make: Callable[[int], Drive | NoDrive],
+) -> Sequence[Drive | NoDrive]:
+    """The drives of ``make_all``; none if their signals differ.
 
-    If that costs none of them anything, the first one still says the fault.
+    After a fault there, each made by its number. If that costs none of them anything, the first one
+    still says the fault.
     """
+    try:
+        return make_all()
+    except UnlikeDrivesError:
+        return ()
+    except Exception as problem:
+        drives = [_made(make, number, name) for number, name in enumerate(names)]
+        if not any(isinstance(drive, NoDrive) or drive.arrays.faults for drive in drives):
+            first = drives[0]
+            assert isinstance(first, Drive)
+            fault = fault_of(problem, "drives laid end to end")
+            drives[0] = replace(first, arrays=replace(first.arrays, faults={"": fault}))
+        return drives
 
-    def made(number: int, name: str) -> Drive | NoDrive:
-        try:
-            return make(number)
-        except Exception as own:
-            return lost_drive(name, own)
 
-    drives = [made(number, name) for number, name in enumerate(names)]
-    if not any(isinstance(drive, NoDrive) or drive.arrays.faults for drive in drives):
-        first = drives[0]
-        assert isinstance(first, Drive)
-        fault = fault_of(problem, "drives laid end to end")
-        drives[0] = replace(first, arrays=replace(first.arrays, faults={"": fault}))
-    return drives
+def _made(make: Callable[[int], Drive | NoDrive], number: int, name: str) -> Drive | NoDrive:
+    try:
+        return make(number)
+    except Exception as problem:
+        return lost_drive(name, problem)

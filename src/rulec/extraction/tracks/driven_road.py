@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import groupby
+from typing import Any, TypeAlias
 
 import numpy as np
 import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.array_types import Floats
+from rulec.array_types import Flags, Floats
+from rulec.extraction.kept_results import KeepsResults, kept
 from rulec.extraction.tracks.matching.driven_route import pieces_of
 from rulec.recordings.recording import LIMIT_SIGN, Lanelet, Points, Recording
 from rulec.scenario.recorded.junction_lanelets import marks_junctions
@@ -37,6 +39,9 @@ _BESIDE_M = 20.0
 _AWAY_M = 30.0
 """A road meets itself if it is within ``_BESIDE_M`` of a piece over ``_AWAY_M`` away along it."""
 
+Stretches: TypeAlias = Sequence[tuple[float, float]]
+"""Intervals of a road (m)."""
+
 _FEWEST_CORNERS = 20
 
 _HAIR_M = 0.01
@@ -57,6 +62,7 @@ class DrivenRoad:
     ``own_lanes[i]`` is the lane along which the road leads. ``crossings`` (pedestrian crossings)
     and ``junctions`` are intervals along the road. ``junctions_marked``: whether the map marks
     junctions. ``meets_itself``: whether a place may be beside several pieces, as on a ring.
+    ``computed`` holds the results of functions wrapped in ``once_a_road``.
     """
 
     rows: tuple[tuple[Lanelet | None, ...], ...]
@@ -68,6 +74,7 @@ class DrivenRoad:
     junctions: tuple[tuple[float, float], ...]
     junctions_marked: bool
     meets_itself: bool = False
+    computed: dict[object, Any] = field(default_factory=dict)
 
     def lanelet(self, piece: int, lane: int) -> Lanelet:
         """The lanelet of a lane; ego's own lanelet where the map has none."""
@@ -147,7 +154,7 @@ class _Layout:
     lanes: Lanes
 
 
-class DrivenRoads:
+class DrivenRoads(KeepsResults):
     """The roads of a recording's drives; roads along the same lanelets are laid out once.
 
     ``junctions`` are the ids of the lanelets that lie in a junction.
@@ -157,8 +164,6 @@ class DrivenRoads:
         self._recording = recording
         self._junctions = junctions
         self._marks_junctions = marks_junctions(recording)
-        self._layouts: dict[tuple[tuple[str, ...], ...], _Layout] = {}
-        self._roads: dict[tuple[_Layout, tuple[int, ...]], DrivenRoad] = {}
 
     def along(self, way: Sequence[str]) -> tuple[DrivenRoad, int]:
         """The road of a chain of lanelets and the number of the chain's first piece in it.
@@ -168,18 +173,26 @@ class DrivenRoads:
         behind, ahead = roads_beyond(self._recording, way)
         driven = pieces_of(self._recording, way, self._beside)
         pieces = (*((number,) for number in behind), *driven, *((number,) for number in ahead))
-        if pieces not in self._layouts:
-            self._layouts[pieces] = _layout(self._recording, pieces)
-        layout, first = self._layouts[pieces], len(behind)
+        layout, first = self._layout(pieces), len(behind)
         # Lanes are identified in the middle of the driven pieces
-        key = layout, _own_lanes(layout, first, first + len(driven))
-        if key not in self._roads:
-            self._roads[key] = self._road(*key)
-        return self._roads[key], first
+        return self._road(layout, _own_lanes(layout, first, first + len(driven))), first
+
+    @kept
+    def _layout(self, pieces: tuple[tuple[str, ...], ...]) -> _Layout:
+        recording, entries = self._recording, [piece[0] for piece in pieces]
+        lanelets = [recording.lanelets[number] for number in entries]
+        middles = [_middle(recording, piece) for piece in pieces]
+        line = reference_line(smoothed(np.concatenate(middles)))
+        borders = borders_along(lanelets, line)
+        numbers = tuple(_lane_numbers(recording, pieces))
+        middle_s = float(borders[0] + borders[-1]) / 2
+        lanes = lanes_along(recording, entries, line, middle_s, numbers, borders=borders)
+        return _Layout(pieces, numbers, borders, line, lanes)
 
     def _beside(self, start: str, end: str) -> bool:
         return any(end in lanes_beside(self._recording, start, left=left) for left in (True, False))
 
+    @kept
     def _road(self, layout: _Layout, own_lanes: tuple[int, ...]) -> DrivenRoad:
         recording, borders = self._recording, layout.borders
         entries = [piece[0] for piece in layout.pieces]
@@ -208,17 +221,6 @@ class DrivenRoads:
             junctions_marked=self._marks_junctions,
             meets_itself=meets_itself,
         )
-
-
-def _layout(recording: Recording, pieces: tuple[tuple[str, ...], ...]) -> _Layout:
-    entries = [piece[0] for piece in pieces]
-    lanelets = [recording.lanelets[number] for number in entries]
-    line = reference_line(smoothed(np.concatenate([_middle(recording, piece) for piece in pieces])))
-    borders = borders_along(lanelets, line)
-    numbers = tuple(_lane_numbers(recording, pieces))
-    middle_s = float(borders[0] + borders[-1]) / 2
-    lanes = lanes_along(recording, entries, line, middle_s, numbers, borders=borders)
-    return _Layout(pieces, numbers, borders, line, lanes)
 
 
 def _own_lanes(layout: _Layout, first: int, end: int) -> tuple[int, ...]:
@@ -282,6 +284,26 @@ def _row(recording: Recording, number: str, own: int, count: int) -> tuple[Lanel
     left = lanes_beside(recording, number, left=True)
     row = dict(enumerate((number, *left), own)) | dict(zip(range(own - 1, -1, -1), right))  # noqa: B905
     return tuple(recording.lanelets[row[k]] if k in row else None for k in range(count))
+
+
+def reach_into(stretches: Stretches, low: Floats, high: Floats, before_m: float = 0.0) -> Flags:
+    """Mask of bodies from ``low`` to ``high`` in a stretch of a road, or ``before_m`` before it."""
+    found = np.zeros(low.shape, dtype=bool)
+    for start, end in stretches:
+        found |= (high >= start - before_m) & (low < end)
+    return found
+
+
+def next_along(stretches: Stretches, low: Floats) -> tuple[Floats, Floats]:
+    """Where the first stretch of a road that does not end before ``low`` begins and ends.
+
+    Infinity where there is none.
+    """
+    begin, end = np.full((2, *low.shape), np.inf)
+    for start, stop in sorted(stretches, reverse=True):
+        before = low < stop
+        begin, end = np.where(before, start, begin), np.where(before, stop, end)
+    return begin, end
 
 
 def runs_along(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, float]]:

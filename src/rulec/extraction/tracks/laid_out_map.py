@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
+from rulec.extraction.kept_results import KeepsResults, kept
 from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.recordings.recording import Recording
 from rulec.scenario.recorded.junction_lanelets import junction_lanelets
 
 
-class LaidOutMap:
+class LaidOutMap(KeepsResults):
     """Its lanelet graph, and the roads already laid out along routes."""
 
     def __init__(self, recording: Recording) -> None:
         self.graph = LaneletGraph(recording)
         self.numbers = {name: number for number, name in enumerate(recording.lanelets)}
         self._driven_roads = DrivenRoads(recording, junction_lanelets(recording))
-        self._roads: dict[tuple[str, ...], tuple[DrivenRoad, int] | str] = {}
 
+    @kept
     def road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, int] | str:
         """The road of a route and the piece in which the route begins, or why there is none."""
-        if route not in self._roads:
-            try:
-                self._roads[route] = self._driven_roads.along(route)
-            except ValueError as reason:
-                self._roads[route] = f"its road is invalid: {reason}"
-        return self._roads[route]
+        try:
+            return self._driven_roads.along(route)
+        except ValueError as reason:
+            return f"its road is invalid: {reason}"

@@ -9,7 +9,7 @@ is in it by that much.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
@@ -164,26 +164,19 @@ class RoadExtents:
 
     def part(self, rows: NDArray[intp], columns: slice) -> RoadExtents:
         """The extents of some participants in a range of steps."""
-        part = RoadExtents(
-            **{
-                field.name: part_of(getattr(self, field.name), rows, columns)
-                for field in fields(self)
-            }
-        )
-        # Values already derived for all need not be derived again
-        for name in ("s", "lane"):
-            if name in self.__dict__:
-                part.__dict__[name] = part_of(self.__dict__[name], rows, columns)
-        return part
+        return self._each(lambda values: part_of(values, rows, columns))
 
     def at(self, rows: NDArray[intp], columns: NDArray[intp]) -> RoadExtents:
         """The extents at cells of the arrays, given by rows and columns of the same shape."""
-        part = RoadExtents(
-            **{name: at_columns(getattr(self, name), rows, columns) for name in _FIELDS}
-        )
+        return self._each(lambda values: at_columns(values, rows, columns))
+
+    def _each(self, own: Callable[[NDArray[Any]], NDArray[Any]]) -> RoadExtents:
+        found = RoadExtents(**{name: own(getattr(self, name)) for name in _FIELDS})
+        # Values already derived for all need not be derived again
         for name in ("s", "lane"):
-            part.__dict__[name] = getattr(self, name)[rows, columns]
-        return part
+            if name in self.__dict__:
+                found.__dict__[name] = own(self.__dict__[name])
+        return found
 
     def end_to_end(self, laid: LaidOut) -> RoadExtents:
         """The extents of some participants in several ranges of columns, end to end."""
@@ -191,15 +184,15 @@ class RoadExtents:
 
     def and_one(self, other: RoadExtents, row: int) -> RoadExtents:
         """These extents, followed by one row of ``other`` in the same steps."""
-        return RoadExtents(
-            **{
-                field.name: and_row(getattr(self, field.name), getattr(other, field.name), row)
-                for field in fields(self)
-            }
-        )
+        both = {name: (getattr(self, name), getattr(other, name)) for name in _FIELDS}
+        return RoadExtents(**{name: and_row(*values, row) for name, values in both.items()})
 
 
 _FIELDS = tuple(field.name for field in fields(RoadExtents))
+
+
+def _derived(name: str) -> cached_property[Any]:
+    return cached_property(lambda extents: extents._laid_out(name))
 
 
 class _LaidExtents(RoadExtents):
@@ -239,25 +232,11 @@ class _LaidExtents(RoadExtents):
         values = self.__dict__[name] = self._laid_out(name)
         return values
 
-    @cached_property
-    def s(self) -> Floats:
-        return self._laid_out("s")
-
-    @cached_property
-    def lane(self) -> NDArray[intp]:
-        return self._laid_out("lane")
-
-    @cached_property
-    def lane_steps(self) -> NDArray[int8]:
-        return self._laid_out("lane_steps")
-
-    @cached_property
-    def off_middle(self) -> Floats:
-        return self._laid_out("off_middle")
-
     def _laid_out(self, name: str) -> NDArray[Any]:
         found: NDArray[Any] = self.__dict__["_laid"](getattr(self.__dict__["_whole"], name))
         return found
+
+    s, lane, lane_steps, off_middle = map(_derived, ("s", "lane", "lane_steps", "off_middle"))
 
 
 def at_columns(values: NDArray[Any], rows: NDArray[intp], columns: NDArray[intp]) -> NDArray[Any]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import shapely
 
 from rulec.array_types import Flags, Floats
+from rulec.extraction.kept_results import kept_in
 from rulec.extraction.recording_parts import whole_recording
 from rulec.extraction.tracks.at_junctions.junction_passages import (
     JunctionPassages,
@@ -50,6 +52,8 @@ BACKS_MPS = 4.5
 
 Directions = tuple["bool | None", "bool | None"]
 
+_once_a_map = kept_in("of_map")
+
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
@@ -61,11 +65,8 @@ class Surroundings:
     recording: Recording
     tracks: Tracks
     thresholds: Thresholds
-    computed: dict[object, object] = field(default_factory=dict)
-    of_map: dict[object, object] = field(default_factory=dict)
-    _directions: dict[str, Directions] = field(default_factory=dict)
-    _rings: dict[Side, frozenset[str]] = field(default_factory=dict)
-    _opposite_m: dict[str, float] = field(default_factory=dict)
+    computed: dict[object, Any] = field(default_factory=dict)
+    of_map: dict[object, Any] = field(default_factory=dict)
 
     def __reduce__(self) -> tuple[type[Surroundings], tuple[object, ...]]:
         # Caches are dropped and computed again: their keys are functions, which cannot be pickled.
@@ -81,13 +82,9 @@ class Surroundings:
         joined.__dict__["passages"] = self.passages.and_one(other.passages, row, tracks)
         for name in ("tolerances", "_lanes", "_both_ways"):
             joined.__dict__[name] = getattr(self, name)
-        joined.__dict__["heading_errors"] = np.concatenate(
-            (self.heading_errors, other.heading_errors[row : row + 1])
-        )
-        joined.__dict__["head_as_they_move"] = np.append(
-            self.head_as_they_move, other.head_as_they_move[row]
-        )
-        joined.__dict__["waits"] = np.append(self.waits, other.waits[row])
+        for name in ("heading_errors", "head_as_they_move", "waits"):
+            both = getattr(self, name), getattr(other, name)[row : row + 1]
+            joined.__dict__[name] = np.concatenate(both)
         return joined
 
     @cached_property
@@ -189,11 +186,10 @@ class Surroundings:
             for lane in near
         )
 
+    @_once_a_map
     def ring(self, side: Side) -> frozenset[str]:
         """The lanelets of roundabouts, for traffic that keeps to ``side``."""
-        if side not in self._rings:
-            self._rings[side] = ring_lanelets(self.recording, side)
-        return self._rings[side]
+        return ring_lanelets(self.recording, side)
 
     @cached_property
     def _lanes(self) -> tuple[list[Lanelet], shapely.STRtree]:
@@ -205,35 +201,20 @@ class Surroundings:
     def _both_ways(self) -> bool:
         """Whether some lanelet of the map has one beside it that leads the other way."""
         lanes, _ = self._lanes
-        return any(self._nearest_opposite(lane) <= OTHER_CARRIAGEWAY_M for lane in lanes)
+        return any(self._nearest_opposite(lane.id) <= OTHER_CARRIAGEWAY_M for lane in lanes)
 
-    def directions(self, lanelet: Lanelet) -> Directions:
-        """Whether a carriageway is one-way, and whether a strip or barrier divides the road.
+    @_once_a_map
+    def directions(self, name: str) -> Directions:
+        """Whether a lanelet's carriageway is one-way, and whether a strip or barrier divides it.
 
         None is unknown. Decided by the nearest lane beside its middle that leads the other way. A
         map without any may have left them out. In a junction the roads that lead there decide.
         """
-        if lanelet.id not in self._directions:
-            self._directions[lanelet.id] = self._computed(lanelet)
-        return self._directions[lanelet.id]
-
-    def is_surely_one_way(self, lanelet: Lanelet, side: Side) -> bool:
-        """Whether nobody may drive against a lane: in rings, on motorways, on several lanes.
-
-        Of a carriageway with a single lane, some maps contain only one direction.
-        """
-        if lanelet.id in self.ring(side) or "interstate" in lanelet.types:
-            return True
-        if "intersection" in lanelet.types or not self.directions(lanelet)[0]:
-            return False
-        beside = (lanes_beside(self.recording, lanelet.id, left=left) for left in (True, False))
-        return "lanes" in self.recording.complete or any(beside)
-
-    def _computed(self, lanelet: Lanelet) -> Directions:
+        lanelet = self.recording.lanelets[name]
         if "intersection" in lanelet.types:
-            found = {self.directions(road) for road in self._roads_before(lanelet)}
+            found = {self.directions(road.id) for road in self._roads_before(lanelet)}
             return found.pop() if len(found) == 1 else (None, None)
-        nearest = self._nearest_opposite(lanelet)
+        nearest = self._nearest_opposite(name)
         if nearest <= SAME_CARRIAGEWAY_M:
             return False, False
         if nearest <= OTHER_CARRIAGEWAY_M:
@@ -243,6 +224,18 @@ class Surroundings:
             True if complete or self._both_ways else None,
             False if complete else None,
         )
+
+    def is_surely_one_way(self, lanelet: Lanelet, side: Side) -> bool:
+        """Whether nobody may drive against a lane: in rings, on motorways, on several lanes.
+
+        Of a carriageway with a single lane, some maps contain only one direction.
+        """
+        if lanelet.id in self.ring(side) or "interstate" in lanelet.types:
+            return True
+        if "intersection" in lanelet.types or not self.directions(lanelet.id)[0]:
+            return False
+        beside = (lanes_beside(self.recording, lanelet.id, left=left) for left in (True, False))
+        return "lanes" in self.recording.complete or any(beside)
 
     def _roads_before(self, lanelet: Lanelet) -> Iterator[Lanelet]:
         """The lanelets outside junctions from which a lanelet in a junction can be reached."""
@@ -256,14 +249,10 @@ class Surroundings:
                 else:
                     yield before
 
-    def _nearest_opposite(self, lanelet: Lanelet) -> float:
+    @_once_a_map
+    def _nearest_opposite(self, name: str) -> float:
         """The distance (m) from a lanelet's carriageway to a lane that leads the other way."""
-        if lanelet.id not in self._opposite_m:
-            self._opposite_m[lanelet.id] = self._computed_opposite(lanelet)
-        return self._opposite_m[lanelet.id]
-
-    def _computed_opposite(self, lanelet: Lanelet) -> float:
-        lanes, tree = self._lanes
+        lanelet, (lanes, tree) = self.recording.lanelets[name], self._lanes
         beside = [
             name
             for left in (True, False)

@@ -187,7 +187,7 @@ def cheapest_by_hand(found, tracks, graph, row):
 def further(paths, graph, name, s, moved, cost):
     ways = []
     for start, (so_far, path, since) in paths.items():
-        through, way = np.inf, graph.way(start, name)
+        through, way = np.inf, graph.ways(start).get(name)
         if way is not None:
             off = abs(way.length + s - since - moved) - way.sideways
             through = max(0.0, off) / BETA_M + CHANGE_COST * way.changes

@@ -116,7 +116,7 @@ def _comes_near(context: DriveContext) -> Flags:
     """
     station, against = relations.station(context), _against(context)
     directions = context.surroundings.directions
-    divided = own_lanelets(context).flags(lambda lanelet: directions(lanelet)[1] is True)
+    divided = own_lanelets(context).flags(lambda lanelet: directions(lanelet.id)[1] is True)
     towards = against & (station != relations.IN_FRONT_OF) & ~divided
     comes: Flags = towards | (~against & (station != relations.BEHIND))
     return comes

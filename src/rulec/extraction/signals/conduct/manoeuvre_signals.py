@@ -226,7 +226,7 @@ def oncoming_side(context: DriveContext) -> tuple[Flags, Flags]:
 def two_way(context: DriveContext) -> tuple[Flags, Flags]:
     """Masks of states on a road with traffic both ways, and of those where the map does not say."""
     directions = context.surroundings.directions
-    one_way, not_told = own_lanelets(context).told(lambda lanelet: directions(lanelet)[0])
+    one_way, not_told = own_lanelets(context).told(lambda lanelet: directions(lanelet.id)[0])
     return ~one_way & ~not_told, not_told
 
 

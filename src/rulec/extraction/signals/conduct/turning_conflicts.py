@@ -10,11 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any
 
 import numpy as np
-from numpy import intp
-from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
@@ -34,9 +32,6 @@ from rulec.recordings.recording import Points
 _BEFORE_M = 8.0
 _STRAIGHT_RAD = np.radians(30.0)
 _CREEPS_MPS = 0.5
-
-_Cells: TypeAlias = "int | tuple[int | NDArray[intp], int]"
-"""A participant's row, at all times; or rows and a column."""
 
 
 @drive_by_drive
@@ -81,24 +76,16 @@ def _conflicts(
     if ours is None:
         return
     turn = _Turn(own, begin, towards, origin, float(tracks.heading[own.row, came]), ours)
-    behind = (
-        _in_frame(context, turn, (own.row, begin))[0] - _in_frame(context, turn, (rows, begin))[0]
-    )
+    along, _, angles = _in_frame(context, turn, (rows, begin))
+    behind = _in_frame(context, turn, (own.row, begin))[0] - along
     half = float(passages.lengths[own.row]) / 2
     beside = tracks.present[rows, begin] & ~tracks.of_type("pedestrian")[rows]
     beside &= (-half <= behind) & (behind <= BEHIND_M)
-    beside &= ~(np.abs(_angle(context, turn, (rows, begin))) > _STRAIGHT_RAD)
+    beside &= ~(np.abs(angles) > _STRAIGHT_RAD)
     for number in beside.nonzero()[0].tolist():
         found = _conflict(context, turn, int(rows[number]))
         if found is not None:
             yield number, found
-
-
-def _angle(context: DriveContext, turn: _Turn, at: _Cells) -> Floats:
-    """The directions (rad) of participants relative to the one that ego came from."""
-    heading = context.surroundings.passages.tracks.heading[at]
-    angles: Floats = np.angle(np.exp(1j * (heading - turn.heading)))
-    return angles
 
 
 def _conflict(context: DriveContext, turn: _Turn, row: int) -> tuple[int, int, bool] | None:
@@ -113,8 +100,7 @@ def _conflict(context: DriveContext, turn: _Turn, row: int) -> tuple[int, int, b
     clear = _clear(turn, theirs)
     if not -max(place, LAPS_M) <= clear <= ASIDE_M:
         return None
-    along, left = _in_frame(context, turn, row)
-    angle = _angle(context, turn, row)
+    along, left, angle = _in_frame(context, turn, row)
     crosses = _crossed(context, turn, float(left[begin]))
     if crosses is None:
         return None
@@ -180,12 +166,16 @@ def _crossed(
     return columns[0], columns[-1], min(lows), max(highs)
 
 
-def _in_frame(context: DriveContext, turn: _Turn, at: _Cells) -> tuple[Floats, Floats]:
-    """How far (m) participants are along ego's old way from where it came, and to its left."""
+def _in_frame(context: DriveContext, turn: _Turn, at: Any) -> tuple[Floats, Floats, Floats]:
+    """How far (m) participants are along ego's old way and to its left, and their angle (rad).
+
+    ``at``: their rows, and columns if not all.
+    """
     tracks = context.surroundings.passages.tracks
     x, y = tracks.x[at] - turn.origin[0], tracks.y[at] - turn.origin[1]
     cos, sin = np.cos(turn.heading), np.sin(turn.heading)
-    return x * cos + y * sin, y * cos - x * sin
+    angles = np.angle(np.exp(1j * (tracks.heading[at] - turn.heading)))
+    return x * cos + y * sin, y * cos - x * sin, angles
 
 
 turning_conflicts = SignalPasses({"turns_in_way_of": _turns_in_way_of})

@@ -10,9 +10,10 @@ from rulec.array_types import Flags, Floats
 from rulec.extraction.computed_once import once
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.map.level_crossing_signals import Stretches, level_crossings
+from rulec.extraction.signals.map.level_crossing_signals import level_crossings
 from rulec.extraction.signals.measured_numbers import corner_ahead
 from rulec.extraction.signals.signal_columns import WorldSignal, ids_by_state
+from rulec.extraction.tracks.driven_road import Stretches
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 
 ROOM_M = 1.0

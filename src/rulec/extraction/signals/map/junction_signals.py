@@ -28,6 +28,7 @@ from rulec.extraction.signals.map.stop_lines import (
 from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.tracks.driven_road import Stretches, reach_into
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON
 
@@ -42,17 +43,13 @@ _SWEEPS_M = 10.0
 
 
 def _junction_zone(context: DriveContext) -> WorldSignal:
-    zone = np.zeros(context.states, dtype=bool)
-    for start, end in context.road.junctions:
-        zone |= _at_junction(context, start, end)
-    return WorldSignal(zone)
+    return WorldSignal(_at_junctions(context, context.road.junctions))
 
 
-def _at_junction(context: DriveContext, start: float, end: float) -> Flags:
-    """Mask of states in which ego is at a junction, given by an interval of its road."""
-    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    at_junction: Flags = (front >= start - context.thresholds.zone_m) & (rear < end)
-    return at_junction
+def _at_junctions(context: DriveContext, junctions: Stretches) -> Flags:
+    """Mask of states in which ego is at a junction, given by intervals of its road."""
+    own = context.ego_extents
+    return reach_into(junctions, own.s_min[0], own.s_max[0], context.thresholds.zone_m)
 
 
 def _enters_junction(context: DriveContext) -> WorldSignal:
@@ -67,7 +64,7 @@ def _turns(context: DriveContext) -> SignalColumns:
     turn = np.full(context.states, "straight_on", dtype="<U11")
     bends = np.zeros(context.states, dtype=bool)
     for start, end in context.road.junctions:
-        at_junction = _at_junction(context, start, end)
+        at_junction = _at_junctions(context, [(start, end)])
         turn[at_junction] = turn_at(context, start, end)
         bends |= at_junction & _bends_straight_on(context, start, end)
     bends &= turn != "straight_on"
@@ -124,7 +121,7 @@ def way_not_known(context: DriveContext) -> Flags:
     rear = context.ego_extents.s_min[0]
     unknown = np.zeros(context.states, dtype=bool)
     for start, end in context.road.junctions:
-        at_junction = _at_junction(context, start, end)
+        at_junction = _at_junctions(context, [(start, end)])
         ends = context.spans.any(at_junction) & ~context.spans.any(rear >= end)
         for number, columns in context.spans.those(ends):
             parts = _ways_part(context, start, columns)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 from itertools import pairwise
@@ -44,17 +44,14 @@ class Leads(Enum):
 class JunctionAhead:
     """A junction on ego's road, from ``low`` to ``high``, and where each lane before it leads.
 
-    ``heading`` and ``turned`` are the direction in which ego's road comes there, and the angle by
-    which it turns (rad). ``lit``: it may have lights. ``numbers``: the map's junctions there.
+    ``turned`` is the angle (rad) by which ego's road turns there. ``lit``: it may have lights.
     """
 
     low: float
     high: float
-    heading: float
     turned: float
     leads: Sequence[Leads]
     lit: bool
-    numbers: frozenset[int]
 
 
 @once_a_road
@@ -83,7 +80,7 @@ def _junctions_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
         lights = [light for lanelet in row if lanelet is not None for light in lanelet.lights]
         told = "light" in context.recording.complete or map_contents(context).lights
         lit = bool(lights) or not told
-        yield _ahead(context, (low, high), turned=turned, leads=leads, lit=lit)
+        yield JunctionAhead(low, high, turned, tuple(leads), lit)
 
 
 def _forks_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
@@ -102,22 +99,7 @@ def _forks_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
             parts &= all(abs(turn(onward, _end_heading(known[x]))) > _PARTS_RAD for x in others)
             leads.append(Leads.ELSEWHERE if parts else Leads.ALONG)
         if Leads.ELSEWHERE in leads:
-            yield _ahead(context, (place, place), turned=0.0, leads=leads, lit=False)
-
-
-def _ahead(
-    context: DriveContext,
-    at: tuple[float, float],
-    *,
-    turned: float,
-    leads: Sequence[Leads],
-    lit: bool,
-) -> JunctionAhead:
-    (heading,) = context.road.line.headings_at(np.array([at[0] - _HAIR_M])).tolist()
-    known = _junctions_with(context)
-    found = [known[name] for name in context.road.ids_between(*at) if name in known]
-    numbers = frozenset[int]().union(*found)
-    return JunctionAhead(*at, heading, turned, tuple(leads), lit, numbers)
+            yield JunctionAhead(place, place, 0.0, tuple(leads), lit=False)
 
 
 def _end_heading(lanelet: Lanelet) -> float:
@@ -161,7 +143,7 @@ def leads_elsewhere(context: DriveContext) -> ObjectSignal:
     for junction in junctions_ahead(context):
         there = context.relevant & (others.s <= junction.high)
         there &= junction.low - others.s_max <= reach
-        for row in there.any(axis=1).nonzero()[0].tolist() if junction.numbers else ():
+        for row in there.any(axis=1).nonzero()[0].tolist():
             for passage in _passages_at(context, row, junction):
                 inside = (context.columns >= passage.first) & (context.columns <= passage.last)
                 surely, perhaps = _is_on_another_way(context, passage, junction)
@@ -209,8 +191,20 @@ def _parted_at_the_end(context: DriveContext) -> tuple[float, Flags]:
 
 def _passages_at(context: DriveContext, row: int, junction: JunctionAhead) -> Iterator[Passage]:
     """A participant's passages of a junction on ego's road."""
-    passages = context.surroundings.passages.of_row.get(int(context.tracks.rows[row]), ())
-    return (passage for passage in passages if passage.junction in junction.numbers)
+    numbers, passages = (
+        _numbers_at(context, junction.low, junction.high),
+        context.surroundings.passages,
+    )
+    of_row = passages.of_row.get(int(context.tracks.rows[row]), ())
+    return (passage for passage in of_row if passage.junction in numbers)
+
+
+@once_a_road
+def _numbers_at(context: DriveContext, low: float, high: float) -> frozenset[int]:
+    """The numbers of the map's junctions whose ways are on ego's road between two places."""
+    inside = context.road.ids_between(low, high)
+    junctions = enumerate(context.surroundings.passages.junctions)
+    return frozenset(number for number, x in junctions if not inside.isdisjoint(x.names))
 
 
 def _turns_off(context: DriveContext, row: int, junction: JunctionAhead) -> bool | None:
@@ -232,22 +226,11 @@ def _is_on_another_way(
     """
     passages = context.surroundings.passages
     begins = passage.first == int(passages.tracks.present[passage.row].argmax())
-    turned = abs(turn(junction.heading, passage.heading))
-    came = bool(turned > np.radians(context.thresholds.turned_deg))
+    came_from = context.road.line.heading_at(junction.low - _HAIR_M)
+    came = abs(turn(came_from, passage.heading)) > np.radians(context.thresholds.turned_deg)
     leaves = not _goes_along(context, passages.way(passage), junction.turned)
-    surely = (came and not begins) or (passage.sure and (came or leaves))
+    surely = bool(came and not begins) or (passage.sure and bool(came or leaves))
     return surely, not surely and not passage.sure and (begins or leaves)
-
-
-@once_a_recording
-def _junctions_with(context: DriveContext) -> Mapping[str, Collection[int]]:
-    """Lanelet -> the numbers of the map's junctions on whose ways it is."""
-    found: dict[str, set[int]] = defaultdict(set)
-    for number, junction in enumerate(context.surroundings.passages.junctions):
-        for way in junction.ways:
-            for name in way.names:
-                found[name].add(number)
-    return found
 
 
 @once_a_recording

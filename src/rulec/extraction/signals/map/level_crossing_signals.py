@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from heapq import heappop, heappush
 
 import numpy as np
@@ -13,22 +13,20 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.stop_lines import may_have_passed
 from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.driven_road import runs_along
+from rulec.extraction.tracks.driven_road import Stretches, reach_into, runs_along
 from rulec.scenario.recorded.route import lanelet_length
 
 _SIGNS_M = 300.0
 """Signs that warn of a level crossing are at most this far before it: beacons begin at 240 m."""
-
-Stretches = Sequence[tuple[float, float]]
 
 
 def _zones(context: DriveContext) -> SignalColumns:
     if not _tells_rails(context):
         return SignalColumns()
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    zone, enters, may_enter = np.zeros((3, context.states), dtype=bool)
-    for start, end in level_crossings(context):
-        zone |= (front >= start - context.thresholds.zone_m) & (rear < end)
+    enters, may_enter = np.zeros((2, context.states), dtype=bool)
+    zone = reach_into(level_crossings(context), rear, front, context.thresholds.zone_m)
+    for start, _ in level_crossings(context):
         enters |= context.spans.enters(front > start)
         may_enter |= may_have_passed(context, start, front)
     # Those of a net have gates that close while a train comes

@@ -32,7 +32,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.driven_road import DrivenRoad
+from rulec.extraction.tracks.driven_road import DrivenRoad, next_along
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight, Recording
 
@@ -101,11 +101,8 @@ def _way_to_line(context: DriveContext) -> tuple[Floats, tuple[Floats, Floats]]:
 
 
 def _to_junction(context: DriveContext) -> WorldSignal:
-    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    begin = np.full(context.states, np.inf)
-    for low, high in sorted(context.road.junctions, reverse=True):
-        begin = np.where(rear < high, low, begin)
-    way, place = begin - front, context.tolerances.place_m
+    begin, _ = next_along(context.road.junctions, context.ego_extents.s_min[0])
+    way, place = begin - context.ego_extents.s_max[0], context.tolerances.place_m
     to, *bounds = (np.clip(way + more, 0.0, _NO_JUNCTION_M) for more in (0.0, -place, place))
     return WorldSignal(rounded(to), bounds=rounded_outward(bounds[0], bounds[1]))
 

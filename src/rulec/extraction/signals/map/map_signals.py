@@ -33,6 +33,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.tracks.driven_road import next_along
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import (
     BUSES_ONLY,
@@ -206,11 +207,7 @@ def _to_crossing(context: DriveContext, more_m: float) -> Floats:
 @once
 def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
     """Begin and end of ego's present or next pedestrian crossing by state, or infinity."""
-    start, end = np.full((2, context.states), np.inf)
-    for low, high in sorted(context.road.crossings, reverse=True):
-        before = context.ego_extents.s_min[0] < high
-        start, end = np.where(before, low, start), np.where(before, high, end)
-    return start, end
+    return next_along(context.road.crossings, context.ego_extents.s_min[0])
 
 
 def _surface(context: DriveContext) -> WorldSignal:

@@ -141,7 +141,7 @@ def _directions(context: DriveContext) -> Callable[[Lanelet], Directions]:
     """
     ring = context.surroundings.ring(context.side)
     of_road = context.surroundings.directions
-    return lambda lanelet: (True, False) if lanelet.id in ring else of_road(lanelet)
+    return lambda lanelet: (True, False) if lanelet.id in ring else of_road(lanelet.id)
 
 
 def _town(context: DriveContext) -> Callable[[Lanelet], bool | None]:

@@ -15,11 +15,11 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.exit_room import exit_clear
 from rulec.extraction.signals.map.junction_signals import turn_at
-from rulec.extraction.signals.map.level_crossing_signals import Stretches
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import drawn_lines
 from rulec.extraction.signals.signal_columns import WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.tracks.driven_road import Stretches, reach_into
 from rulec.recordings.recording import Recording, is_lane, is_there
 from rulec.scenario.recorded.lane_coordinates import crossings_along
 from rulec.scenario.recorded.route import lanelet_area
@@ -87,11 +87,7 @@ def _turns(context: DriveContext) -> list[tuple[float, float]]:
 
 def in_turn(context: DriveContext) -> Flags:
     """Mask of states in which ego has driven into a junction at which it turns, and is not out."""
-    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    inside = np.zeros(context.states, dtype=bool)
-    for low, high in _turns(context):
-        inside |= (front >= low) & (rear < high)
-    return inside
+    return reach_into(_turns(context), context.ego_extents.s_min[0], context.ego_extents.s_max[0])
 
 
 def in_side_road(context: DriveContext, rows: NDArray[intp]) -> Flags:
@@ -191,7 +187,7 @@ def _junctions_with_lights_untold(context: DriveContext) -> Stretches:
         for junction in context.surroundings.passages.junctions
         if any(known[x].lights for way in junction.ways for x in way.entries if x in known)
     ]
-    names = {name for junction in lit for way in junction.ways for name in way.names}
+    names = frozenset().union(*(junction.names for junction in lit))
     return [
         (low - reach, high + reach)
         for low, high in context.road.junctions

@@ -23,6 +23,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distances
 from rulec.extraction.signals.signal_columns import ObjectSignal, rounded, rounded_outward
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.tracks.driven_road import reach_into
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
@@ -180,12 +181,8 @@ def may_part(context: DriveContext) -> ObjectSignal:
 
 def _in_junctions(context: DriveContext, cells: Cells) -> Flags:
     """Mask of bodies in the junctions of ego's road."""
-    inside, junctions = np.zeros(len(cells), dtype=bool), context.road.junctions
-    if junctions:
-        s_min, s_max = map(cells.of, (context.extents.s_min, context.extents.s_max))
-        for start, end in junctions:
-            inside |= (s_max >= start) & (s_min < end)
-    return inside
+    extents = context.extents
+    return reach_into(context.road.junctions, cells.of(extents.s_min), cells.of(extents.s_max))
 
 
 def _would_stand(context: DriveContext, at: Cells, spans: EndToEnd) -> NDArray[intp]:

@@ -22,6 +22,7 @@ from rulec.extraction.signals.conduct.others_lamps import (
 from rulec.extraction.signals.ego_lanelets import those_on_lanes
 from rulec.extraction.signals.signal_columns import ObjectSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.tracks.driven_road import reach_into
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
 
@@ -271,10 +272,8 @@ def _came_up(context: DriveContext) -> ObjectSignal:
 def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags]:
     """Masks of participants in ``rows`` beside ego that came up there, or perhaps did."""
     waits = ~context.ego_moves
-    at_junction = np.zeros(context.states, dtype=bool)
-    front = context.ego_extents.s_max[0]
-    for start, end in context.road.junctions:
-        at_junction |= (front >= start - context.thresholds.approach_m) & (front < end)
+    front, approach_m = context.ego_extents.s_max[0], context.thresholds.approach_m
+    at_junction = reach_into(context.road.junctions, front, front, approach_m)
     station, there = relations.station(context)[rows], ~np.isnan(context.extents.s_min[rows])
     beside = there & (station == relations.BESIDE)
     behind_ego = there & (station == relations.IN_FRONT_OF)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +19,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Floats
+from rulec.extraction.kept_results import KeepsResults, kept
 from rulec.extraction.tracks.at_junctions.junctions import (
     Interval,
     Junction,
@@ -54,7 +55,7 @@ class Passage:
 
     ``way`` is the number of the way; ``sure`` is False if it may be another one. ``heading`` is the
     direction (rad) of approach when the front got there: the participant may have turned by the
-    time its middle is in the junction. ``occupied`` keeps what ``JunctionPassages.occupied`` found.
+    time its middle is in the junction.
     """
 
     row: int
@@ -64,11 +65,10 @@ class Passage:
     first: int
     last: int
     heading: float
-    occupied: dict[Interval, tuple[float | None, float | None]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
-class JunctionPassages:
+class JunctionPassages(KeepsResults):
     """All passages of a recording, by participant and by junction.
 
     ``astray``: by junction, row and first and last column of participants in it on no way.
@@ -179,16 +179,12 @@ class JunctionPassages:
         """The way of a passage."""
         return self.junctions[passage.junction].ways[passage.way]
 
+    @kept
     def occupied(self, passage: Passage, interval: Interval) -> tuple[float | None, float | None]:
         """When (in columns) its front reaches an interval of its way, and its rear has passed it.
 
         Interpolated between columns; None where the recording ends before.
         """
-        if interval not in passage.occupied:
-            passage.occupied[interval] = self._occupied(passage, interval)
-        return passage.occupied[interval]
-
-    def _occupied(self, passage: Passage, interval: Interval) -> tuple[float | None, float | None]:
         low, high = interval
         half = self.lengths[passage.row] / 2
         middle, first = self._places(passage), self.front_enters[passage]

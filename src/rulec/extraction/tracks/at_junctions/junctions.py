@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise, takewhile
 
@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from rulec.extraction.kept_results import KeepsResults, kept
 from rulec.extraction.tracks.driven_road import TURN_REACH_M
 from rulec.recordings.polylines import arc_lengths, line_length
 from rulec.recordings.recording import (
@@ -104,7 +105,7 @@ def _heading(points: Points) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Junction:
+class Junction(KeepsResults):
     """A junction with its ways.
 
     ``regulated``: whether signs or lights determine priority; None if the map does not say.
@@ -113,21 +114,24 @@ class Junction:
     id: str
     ways: tuple[JunctionWay, ...]
     regulated: bool | None
-    _met: dict[tuple[int, int], tuple[Interval, Interval] | None] = field(default_factory=dict)
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        """The ids of the lanelets of all ways."""
+        return frozenset().union(*(way.names for way in self.ways))
 
     @cached_property
     def area(self) -> shapely.Geometry:
         """The area of all of the junction's lanelets."""
         return shapely.union_all([lanelet_area(x) for way in self.ways for x in way.lanelets])
 
+    @kept
     def meeting(self, way: int, other: int) -> tuple[Interval, Interval] | None:
         """The intervals (m) of two ways in which they cross or join, one along each, or None.
 
         Ways from the same lanelet do not cross; ways that share lanelets join before them.
         """
-        if (way, other) not in self._met:
-            self._met[way, other] = _meeting(self.ways[way], self.ways[other])
-        return self._met[way, other]
+        return _meeting(self.ways[way], self.ways[other])
 
     @cached_property
     def ending_roads(self) -> tuple[tuple[bool, bool], ...]:

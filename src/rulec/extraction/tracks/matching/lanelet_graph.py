@@ -15,6 +15,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from rulec.extraction.kept_results import KeepsResults, kept
 from rulec.extraction.tracks.matching.lane_strips import LaneStrip
 from rulec.recordings.adjacency import bordering
 from rulec.recordings.recording import Lanelet, Recording, is_lane
@@ -45,15 +46,11 @@ class Way:
         return self.changes * _LANE_M
 
 
-class LaneletGraph:
+class LaneletGraph(KeepsResults):
     """The lanes of a map and the ways between them, each computed once."""
 
     def __init__(self, recording: Recording) -> None:
         self._recording = recording
-        self._ways: dict[str, Mapping[str, Way]] = {}
-        self._rows: dict[str, tuple[str, ...]] = {}
-        self._lengths: dict[str, float] = {}
-        self._strips: dict[int, LaneStrip] = {}
         self._bordering: dict[str, list[str]] = defaultdict(list)
         for pair in bordering(recording.lanelets.values()):
             if pair.length >= _SHORTEST_M:
@@ -76,36 +73,25 @@ class LaneletGraph:
         found: NDArray[np.float64] = shapely.bounds(np.array(self.areas, dtype=object))
         return found
 
+    @kept
     def strip(self, number: int) -> LaneStrip:
         """A lane as a strip, given by its number among the lanes."""
-        if number not in self._strips:
-            self._strips[number] = LaneStrip.of(self.lanes[number], self.areas[number])
-        return self._strips[number]
+        return LaneStrip.of(self.lanes[number], self.areas[number])
 
+    @kept
     def length(self, start: str) -> float:
         """The length (m) of a lane's middle line."""
-        if start not in self._lengths:
-            self._lengths[start] = lanelet_length(self._recording.lanelets[start])
-        return self._lengths[start]
+        return lanelet_length(self._recording.lanelets[start])
 
     def beside(self, start: str, end: str) -> bool:
         """Whether a lane is beside another one, in its row or along a part of its border."""
         return end in self.row(start) or end in self._bordering[start]
 
+    @kept
     def row(self, start: str) -> tuple[str, ...]:
         """The lanes beside each other at a lanelet, from the right."""
-        if start not in self._rows:
-            right, left = (
-                lanes_beside(self._recording, start, left=left) for left in (False, True)
-            )
-            self._rows[start] = (*right[::-1], start, *left)
-        return self._rows[start]
-
-    def way(self, start: str, end: str) -> Way | None:
-        """The way with the fewest changes, then lanelets; None if no short way exists."""
-        if start not in self._ways:
-            self._ways[start] = self._ways_from(start)
-        return self._ways[start].get(end)
+        right, left = (lanes_beside(self._recording, start, left=left) for left in (False, True))
+        return (*right[::-1], start, *left)
 
     def successors(self, start: str) -> Iterator[Lanelet]:
         """The lanes that a lane leads to."""
@@ -114,7 +100,9 @@ class LaneletGraph:
             if number in lanelets and is_lane(lanelets[number]):
                 yield lanelets[number]
 
-    def _ways_from(self, start: str) -> Mapping[str, Way]:
+    @kept
+    def ways(self, start: str) -> Mapping[str, Way]:
+        """The short ways to other lanes, each with the fewest changes, then lanelets."""
         ways = {start: Way((), 0.0, 0)}
         ring = [start]
         for hop in range(MOST_HOPS + 1):

@@ -107,7 +107,7 @@ class MapMatching:
         places: list[int] = []
         for change in changes[bisect_right(changes, start) : bisect_left(changes, end)]:
             places += [len(chain) - 1] * (change - begin)
-            way = self._graph.way(names[lanes[change - 1]], names[lanes[change]])
+            way = self._graph.ways(names[lanes[change - 1]]).get(names[lanes[change]])
             assert way is not None, "a stretch goes on only along ways"
             chain += way.lanelets
             begin = change
@@ -308,9 +308,10 @@ def _transitions(
     count = len(found.names)
     codes = found.lanes[since] * count + found.lanes[to]
     different = distinct(codes)
-    ways = [
-        graph.way(*(found.names[k] for k in divmod(code, count))) for code in different.tolist()
-    ]
+    starts, ends = (numbers.tolist() for numbers in np.divmod(different, count))
+    ways_of = {start: graph.ways(found.names[start]) for start in set(starts)}
+    pairs_of = zip(starts, ends, strict=True)
+    ways = [ways_of[start].get(found.names[end]) for start, end in pairs_of]
     which = different.searchsorted(codes)
     length = np.array([np.inf if way is None else way.length for way in ways])[which]
     changed = np.array([0.0 if way is None else way.changes for way in ways])
