@@ -132,11 +132,6 @@ class _Batch(KeepsResults):
         rows = self._rows[road]
         return self._drives.places_of(road, np.fromiter(rows, dtype=intp, count=len(rows)))
 
-    @kept
-    def _off_road(self, road: DrivenRoad) -> NDArray[intp]:
-        """In how many columns before each the candidates, a row each, have no place on the road."""
-        return np.pad(np.isnan(self._places(road).extents.s).cumsum(axis=1), ((0, 0), (1, 0)))
-
     def drives(self, *, bare: bool) -> Iterator[Block]:
         """The drives of each candidate, ordered by road, in blocks.
 
@@ -190,8 +185,8 @@ class _Batch(KeepsResults):
         if road is None or road.meets_itself or stretch.against:
             return None
         columns = slice(stretch.first, stretch.last + 1)
-        n_off = self._off_road(road)[self._rows[road][row]]
-        if n_off[columns.stop] > n_off[columns.start]:
+        places, own = self.places(road, row)
+        if np.isnan(places.extents.s[own, columns]).any():
             return None
         ego = self.surroundings.tracks.participants[row].id
         name = ego if number == 0 else f"{ego}#{number + 1}"

@@ -11,6 +11,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
+from rulec.extraction.kept_results import KeepsResults, kept
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.lane_sets import LaneSets, lane_sets, lanes_touched
 from rulec.extraction.tracks.road_extents import RoadExtents, and_row
@@ -43,7 +44,7 @@ _ONCOMING_COSINE = -0.7
 
 
 @dataclass(frozen=True, eq=False)
-class RoadPlaces:
+class RoadPlaces(KeepsResults):
     """The places of participants on a road, a row each, by step.
 
     ``elsewhere``: whether a participant drives on lanelets outside the road. ``in_traffic``:
@@ -69,9 +70,6 @@ class RoadPlaces:
         # Values already derived for each row need not be derived again
         for name in ("lanes_there", "touched", "on_lanes", "crosses", "counts", "seen"):
             joined.__dict__[name] = and_row(getattr(self, name), getattr(other, name), row)
-        for place_m, own in self._lanes_within.items():
-            both = zip(own, other.lanes_within(place_m), strict=True)
-            joined._lanes_within[place_m] = tuple(and_row(*sets, row) for sets in both)
         for name in ("s", "lane", "lane_steps"):
             values = getattr(self.extents, name), getattr(other.extents, name)
             joined.extents.__dict__[name] = and_row(*values, row)
@@ -94,21 +92,15 @@ class RoadPlaces:
         (sets,) = lanes_touched(self.extents, self.lanes_there, (self.thresholds.touching_m,))
         return sets
 
+    @kept
     def lanes_within(self, place_m: float) -> tuple[LaneSets, ...]:
         """The sets of lanes reached into: as measured, and by ``place_m`` less far and farther.
 
         Each side of a body counts by itself at a lane's bounds.
         """
-        if place_m not in self._lanes_within:
-            reach = self.thresholds.touching_m
-            least = reach + place_m, reach - place_m
-            others = lanes_touched(self.extents, self.lanes_there, least)
-            self._lanes_within[place_m] = self.touched, *others
-        return self._lanes_within[place_m]
-
-    @cached_property
-    def _lanes_within(self) -> dict[float, tuple[LaneSets, ...]]:
-        return {}
+        reach = self.thresholds.touching_m
+        least = reach + place_m, reach - place_m
+        return self.touched, *lanes_touched(self.extents, self.lanes_there, least)
 
     @cached_property
     def on_lanes(self) -> Flags:

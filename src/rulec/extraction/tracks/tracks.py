@@ -17,6 +17,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
+from rulec.extraction.kept_results import KeepsResults, kept
 from rulec.extraction.recording_parts import looked_at
 from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
@@ -37,18 +38,16 @@ from rulec.trace.laid_out import LaidOut
 from rulec.trace.plain_arrays import zero_if_nan
 
 
-class ObjectTypes:
+class ObjectTypes(KeepsResults):
     """The object types of a recording's participants, as masks that are built once."""
 
     def __init__(self, participants: Iterable[Participant]) -> None:
         self._types = [body.object_types for body in participants]
-        self._flags: dict[str, Flags] = {}
 
+    @kept
     def of(self, name: str) -> Flags:
         """Mask of the participants that have a type or one of its subtypes."""
-        if name not in self._flags:
-            self._flags[name] = np.array([name in types for types in self._types], dtype=bool)
-        return self._flags[name]
+        return np.array([name in types for types in self._types], dtype=bool)
 
     def of_unknown(self) -> Flags:
         """Mask of the participants of which only a road user is known."""
@@ -57,10 +56,9 @@ class ObjectTypes:
 
     def unknown_as_vehicles(self) -> ObjectTypes:
         """The types if all participants of unknown type were vehicles."""
-        other, unknown = copy(self), OBSTACLE_TYPES["unknown"]
+        other, unknown = ObjectTypes(()), OBSTACLE_TYPES["unknown"]
         vehicle = OBSTACLE_TYPES["vehicle"]
         other._types = [vehicle if types == unknown else types for types in self._types]
-        other._flags = {}
         return other
 
 

@@ -140,15 +140,13 @@ class Junction(KeepsResults):
         A road ends if no way goes straight on from it. It meets one that goes on if a way does
         across.
         """
-        on_wheels = [way for way in self.ways if not way.on_rails]
+        wheels = np.array([not way.on_rails for way in self.ways], dtype=bool)
         begins = np.array([way.headings[0] for way in self.ways])
-        others = np.array([way.headings[0] for way in on_wheels])
-        away = np.abs(turn(begins[:, None], others))
-        goes_straight = np.array([abs(way.turned) < _TURNED for way in on_wheels], dtype=bool)
-        straight = ((away < _TURNED) & goes_straight).any(axis=1)
+        away = np.abs(turn(begins[:, None], begins[wheels]))
+        is_straight = np.array([abs(way.turned) < _TURNED for way in self.ways], dtype=bool)
+        straight = ((away < _TURNED) & is_straight[wheels]).any(axis=1)
         is_met = (away > np.pi / 4) & (away < 3 * np.pi / 4)
-        on = straight[[not way.on_rails for way in self.ways]]
-        goes_on = (is_met & on).any(axis=1)
+        goes_on = (is_met & straight[wheels]).any(axis=1)
         ends = straight & is_met.any(axis=1) & ~goes_on
         return tuple(zip((~straight & goes_on).tolist(), ends.tolist(), strict=True))
 

@@ -48,7 +48,6 @@ _SEES_GREEN_S = 1.0
 
 _GO, _STOP, _UNTOLD = 1, 2, 3
 _TELLS = {"green_light": _GO, "red_light": _STOP, "amber_light": _STOP, "no_light": 0}
-_TELLING = [*_TELLS.values()]
 
 _HAIR_M = 0.01
 
@@ -131,7 +130,9 @@ def _lights_ahead(context: DriveContext, asked: Flags, reach: Floats) -> NDArray
         if lights_of(recording, road, line.piece, line.lane):
             ahead = asked & line.on_lane & (front <= line.last) & (front > line.first - reach)
             shown = light_shown(context, line.piece, line.lane)[ahead]
-            told[ahead] = np.select([shown == colour for colour in _TELLS], _TELLING, _UNTOLD)
+            told[ahead] = np.select(
+                [shown == colour for colour in _TELLS], [*_TELLS.values()], _UNTOLD
+            )
     return told
 
 

@@ -19,11 +19,7 @@ from rulec.array_types import Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS, turns_far
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
-from rulec.extraction.tracks.at_junctions.junctions import (
-    Junction,
-    JunctionWay,
-    entry_lights,
-)
+from rulec.extraction.tracks.at_junctions.junctions import Junction, JunctionWay, entry_lights
 from rulec.recordings.recording import GIVE_WAY_SIGNS, LIMIT_SIGN, STOP_SIGNS
 from rulec.scenario.recorded.reference_line import turn
 
