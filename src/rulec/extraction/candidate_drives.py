@@ -11,9 +11,9 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.extraction.computed_once import KeepsResults, kept
 from rulec.extraction.context_arrays import EgosOnRoad, drives_context
 from rulec.extraction.drives import Drives
-from rulec.extraction.kept_results import KeepsResults, kept
 from rulec.extraction.traces.lost_drives import made_together
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.traces.to_trace import TraceWriter, to_traces

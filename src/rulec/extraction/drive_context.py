@@ -12,7 +12,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.kept_results import kept
+from rulec.extraction.computed_once import kept
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.lane_sets import LaneSets, edges, is_in
 from rulec.extraction.tracks.road_extents import RoadExtents

@@ -14,8 +14,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
+from rulec.extraction.computed_once import KeepsResults, kept
 from rulec.extraction.context_arrays import EgosOnRoad, drives_context
-from rulec.extraction.kept_results import KeepsResults, kept
 from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.traces.lost_drives import lost_drive, made_together
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive

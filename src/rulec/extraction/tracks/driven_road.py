@@ -13,7 +13,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.kept_results import KeepsResults, kept
+from rulec.extraction.computed_once import KeepsResults, kept
 from rulec.extraction.tracks.matching.driven_route import pieces_of
 from rulec.recordings.recording import LIMIT_SIGN, Lanelet, Points, Recording
 from rulec.scenario.recorded.junction_lanelets import marks_junctions

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rulec.extraction.kept_results import KeepsResults, kept
+from rulec.extraction.computed_once import KeepsResults, kept
 from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.recordings.recording import Recording

@@ -11,7 +11,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.kept_results import KeepsResults, kept
+from rulec.extraction.computed_once import KeepsResults, kept
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.lane_sets import LaneSets, lane_sets, lanes_touched
 from rulec.extraction.tracks.road_extents import RoadExtents, and_row

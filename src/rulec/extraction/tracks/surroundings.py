@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.kept_results import kept_in
+from rulec.extraction.computed_once import kept_in
 from rulec.extraction.recording_parts import whole_recording
 from rulec.extraction.tracks.at_junctions.junction_passages import (
     JunctionPassages,

@@ -17,7 +17,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.kept_results import KeepsResults, kept
+from rulec.extraction.computed_once import KeepsResults, kept
 from rulec.extraction.recording_parts import looked_at
 from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of

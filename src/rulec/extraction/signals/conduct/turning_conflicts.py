@@ -44,7 +44,7 @@ def _turns_in_way_of(context: DriveContext) -> SignalColumns:
         way = context.surroundings.passages.way(passage)
         turned, at_ring = way.turned, (way.entries | way.exits | way.names) & ring
         if least < abs(turned) < np.pi - least and not at_ring:
-            for row, (first, last, known) in _conflicts(context, passage, float(np.sign(turned))):
+            for row, (first, last, known) in _conflicts(context, passage):
                 (met if known and passage.sure else unsure)[row, first : last + 1] = True
     return SignalColumns(about={"turns_in_way_of": met}, unknown={"turns_in_way_of": unsure & ~met})
 
@@ -53,20 +53,17 @@ def _turns_in_way_of(context: DriveContext) -> SignalColumns:
 class _Turn:
     """Ego's turn from a column on, in the frame of the place and heading that it came from.
 
-    ``towards``: 1 if it turns left, -1 if right. ``ours``: ego's outline where it came from.
+    ``ours``: ego's outline where it came from.
     """
 
     own: Passage
     begin: int
-    towards: float
     origin: tuple[float, float]
     heading: float
     ours: Points
 
 
-def _conflicts(
-    context: DriveContext, own: Passage, towards: float
-) -> Iterator[tuple[int, tuple[int, int, bool]]]:
+def _conflicts(context: DriveContext, own: Passage) -> Iterator[tuple[int, tuple[int, int, bool]]]:
     """The rows of those whose way ego is in, in which states, and whether that is known."""
     passages, rows = context.surroundings.passages, context.tracks.rows
     tracks, begin = passages.tracks, max(own.first, context.first_column)
@@ -75,7 +72,7 @@ def _conflicts(
     ours = tracks.outline(own.row, came)
     if ours is None:
         return
-    turn = _Turn(own, begin, towards, origin, float(tracks.heading[own.row, came]), ours)
+    turn = _Turn(own, begin, origin, float(tracks.heading[own.row, came]), ours)
     along, _, angles = _in_frame(context, turn, (rows, begin))
     behind = _in_frame(context, turn, (own.row, begin))[0] - along
     half = float(passages.lengths[own.row]) / 2
@@ -97,7 +94,7 @@ def _conflict(context: DriveContext, turn: _Turn, row: int) -> tuple[int, int, b
     theirs = tracks.outline(row, begin)
     if theirs is None:
         return None
-    clear = _clear(turn, theirs)
+    clear = _clear(turn, theirs, np.sign(passages.way(turn.own).turned))
     if not -max(place, LAPS_M) <= clear <= ASIDE_M:
         return None
     along, left, angle = _in_frame(context, turn, row)
@@ -135,10 +132,10 @@ def _came(context: DriveContext, own: Passage, begin: int) -> int:
     return int(before[-1] if len(before) else there[0])
 
 
-def _clear(turn: _Turn, theirs: Points) -> float:
-    """How far (m) a body is clear of ego's, where it came from, on the side it turns to."""
+def _clear(turn: _Turn, theirs: Points, towards: float) -> float:
+    """How far (m) a body is clear of ego's, where it came from, on a side: 1 left, -1 right."""
     left = -np.sin(turn.heading), np.cos(turn.heading)
-    ours, theirs = (turn.towards * ((body - turn.origin) @ left) for body in (turn.ours, theirs))
+    ours, theirs = (towards * ((body - turn.origin) @ left) for body in (turn.ours, theirs))
     return float(theirs.min() - ours.max())
 
 

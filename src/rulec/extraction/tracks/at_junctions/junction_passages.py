@@ -19,7 +19,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Floats
-from rulec.extraction.kept_results import KeepsResults, kept
+from rulec.extraction.computed_once import KeepsResults, kept
 from rulec.extraction.tracks.at_junctions.junctions import (
     Interval,
     Junction,

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from rulec.extraction.kept_results import KeepsResults, kept
+from rulec.extraction.computed_once import KeepsResults, kept
 from rulec.extraction.tracks.driven_road import TURN_REACH_M
 from rulec.recordings.polylines import arc_lengths, line_length
 from rulec.recordings.recording import (

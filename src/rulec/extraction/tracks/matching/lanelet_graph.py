@@ -15,7 +15,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from rulec.extraction.kept_results import KeepsResults, kept
+from rulec.extraction.computed_once import KeepsResults, kept
 from rulec.extraction.tracks.matching.lane_strips import LaneStrip
 from rulec.recordings.adjacency import bordering
 from rulec.recordings.recording import Lanelet, Recording, is_lane
