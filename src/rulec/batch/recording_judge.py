@@ -44,13 +44,7 @@ RowMaker: TypeAlias = Callable[
     [DriveVerdict | NoDrive, RecordingVerdicts, str, "Sequence[VerdictFinding] | None"],
     Iterator[Mapping[str, object]],
 ]
-"""Makes the table rows of a drive and its findings; like those below sent to other processes."""
-
-LineMaker: TypeAlias = Callable[..., str]
-"""``recording_json.as_json``."""
-
-IdleRules: TypeAlias = Callable[..., frozenset[str]]
-"""``drive_facts.idle_rules``."""
+"""Makes the table rows of a drive and its findings; it is sent to other processes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +53,10 @@ class JudgeSettings:
 
     ``source`` says how to read each file; its path is replaced. The first ``to_explain`` violations
     of each file are explained, part by part if ``every_part``. The results may be text in this
-    ``layout``, lines of JSON (``to_line``) and ``findings``. ``labels`` are names for files
-    whose paths mean nothing to a reader. ``to_rows``, if given, makes the rows of drives and rules
-    for tables of findings, ``idle_rules`` finds those without an opportunity.
+    ``layout``, lines of JSON (by ``to_line``, as in ``recording_json``) and ``findings``. Files
+    whose paths mean nothing to a reader have names in ``labels``. ``to_rows``, if given, makes the
+    rows of drives and rules for tables of findings, ``idle_rules`` finds those without an
+    opportunity, as in ``drive_facts``.
     """
 
     rules: CompiledRulebook
@@ -71,10 +66,10 @@ class JudgeSettings:
     every_part: bool
     layout: AnswerLayout | None
     findings: bool
-    to_line: LineMaker | None = None
+    to_line: Callable[..., str] | None = None
     labels: Mapping[str, str] = field(default_factory=dict)
     to_rows: RowMaker | None = None
-    idle_rules: IdleRules | None = None
+    idle_rules: Callable[..., frozenset[str]] | None = None
 
 
 @dataclass(frozen=True, slots=True)
