@@ -17,7 +17,6 @@ from rulec.cli.verdict_outputs import finding_writer
 from rulec.diagnostics import RulecError
 from rulec.monitoring.explain.margins import Margin
 from rulec.report.findings.finding_formats import ENDINGS
-from rulec.report.findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
 from rulec.report.findings.verdict_finding import (
     COLUMNS,
     FindingContext,
@@ -260,16 +259,17 @@ def test_mcap_has_one_time_line(rules):
         written(rules, "mcap", FOUND, FOUND)
 
 
-def test_messages_are_found_by_their_time():
-    stream = io.BytesIO()
-    channels = (JsonChannel("/a", "A", "{}"), JsonChannel("/b", "B", "{}"))
-    given = [TimedMessage(0, 30, "3"), TimedMessage(1, 10, "1"), TimedMessage(0, 20, "2")]
-    write_mcap(stream, "x", channels, given, {})
-    reader = make_reader(io.BytesIO(stream.getvalue()), validate_crcs=True)
-    whole = [(channel.topic, message.data) for _, channel, message in reader.iter_messages()]
-    assert whole == [("/b", b"1"), ("/a", b"2"), ("/a", b"3")]
-    some = reader.iter_messages(topics=["/a"], starting_at=15, ending_before=30)
-    assert [message.data for _, _, message in some] == [b"2"]
+def test_messages_in_mcap_are_found_by_their_time(rules):
+    given = [of(name, from_s=at, to_s=9.0) for name, at in (("c", 3.0), ("a", 1.0), ("b", 2.0))]
+    content = written(rules, "mcap", RecordingFindings("f", "A", ("4",), tuple(given)))
+    reader = make_reader(io.BytesIO(content), validate_crcs=True)
+
+    def told(**limits):
+        found = reader.iter_messages(topics=["/rulec/findings"], log_time_order=False, **limits)
+        return [json.loads(message.data)["rule"] for _, _, message in found]
+
+    assert told() == ["a", "b", "c"]
+    assert told(starting_at=1_500_000_000, ending_before=3_000_000_000) == ["b"]
 
 
 @pytest.mark.parametrize("form", ENDINGS)

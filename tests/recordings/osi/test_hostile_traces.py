@@ -44,6 +44,9 @@ def test_a_file_that_is_cut_anywhere(tmp_path, name):
         read_or_refused(file)
 
 
+PACKED_SHORT = struct.pack("<QQQI", 0, 0, 3, 0) + mcap.text("") + struct.pack("<Q", 9) + b"abc"
+"""A chunk that is to have nine bytes, and has the three that it says to unpack to."""
+
 INNER = mcap.schema(1, "osi3.GroundTruth") + mcap.channel(1, 1) + mcap.message(1, 0, MESSAGES[0])
 
 
@@ -51,16 +54,21 @@ INNER = mcap.schema(1, "osi3.GroundTruth") + mcap.channel(1, 1) + mcap.message(1
     ("data", "said"),
     [
         (mcap.MAGIC, "it ends before its data do"),
-        (mcap.MAGIC + mcap.record(6, b"abc"), "a chunk ends in its head"),
+        (mcap.MAGIC + mcap.record(6, b"abc"), "a record is shorter than its kind is"),
         (mcap.MAGIC + struct.pack("<BQ", 6, 2**60), "a record has 1,152,921,504,606,846,976 bytes"),
         (mcap.MAGIC + struct.pack("<BQ", 6, 99), "it has been cut short"),
         (mcap.file(mcap.message(1, 0, b"")), "channel 1, which has not been described before"),
         (mcap.file(mcap.record(4, b"\1")), "a record is shorter than its kind is"),
         (mcap.file(mcap.chunk(INNER, "zstd", size=10)), "damaged or not of its size"),
-        (mcap.file(mcap.chunk(INNER, "lz4", size=10**8)), "instead of 100,000,000"),
+        (mcap.file(mcap.chunk(INNER, "lz4", size=10**8)), "not of its size, 100,000,000 bytes"),
         (mcap.file(mcap.chunk(INNER, "zstd", size=2**40)), "a chunk has 1,099,511,627,776 bytes"),
         (mcap.file(mcap.chunk(INNER, "brotli")), "by another method than lz4 or zstd"),
         (mcap.file(mcap.chunk(INNER, "lz4", checksum=1)), "its checksum is not that"),
+        (
+            mcap.file(mcap.chunk(struct.pack("<BQ", 5, 2**63))),
+            "a record has 9,223,372,036,854,775,808",
+        ),
+        (mcap.file(mcap.record(6, PACKED_SHORT)), "a record is shorter than its kind is"),
         (mcap.file(mcap.chunk(INNER[:-3])), "a record in a chunk is longer than the chunk"),
         (mcap.file(mcap.chunk(mcap.record(3, b"\1\0" + b"\xff" * 4))), "shorter than its kind"),
     ],

@@ -3,13 +3,14 @@
 import struct
 import zlib
 
-import cramjam
+import zstandard
+from lz4 import frame as lz4
 
 MAGIC = b"\x89MCAP0\r\n"
 PACKED = {
     "": lambda data: data,
-    "lz4": lambda data: bytes(cramjam.lz4.compress(data)),
-    "zstd": lambda data: bytes(cramjam.zstd.compress(data)),
+    "lz4": lz4.compress,
+    "zstd": zstandard.compress,
 }
 
 

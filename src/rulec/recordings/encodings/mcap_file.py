@@ -1,25 +1,31 @@
 """MCAP files as a stream of messages, safe against malicious files.
 
-See https://mcap.dev/spec, version 0. The only dependencies are the compression libraries for
-chunks. The index at the end is not used: a file is read from beginning to end.
+See https://mcap.dev/spec, version 0. The library knows what records consist of; sizes are limited
+here. The index at the end is not used: a file is read from beginning to end.
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from io import BytesIO
 from pathlib import Path
-from typing import IO, NamedTuple
+from typing import IO, Any, NamedTuple
 from zlib import crc32
 
-import cramjam
+from lz4.frame import LZ4FrameDecompressor
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import EndOfFile
+from mcap.records import Channel, Chunk, Message, Schema
+from mcap.writer import MCAP0_MAGIC
+from zstandard import ZstdDecompressor, ZstdError
 
 from rulec.files.read_files import opened
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.file_values import short
 
-MAGIC = b"\x89MCAP0\r\n"
+MAGIC = MCAP0_MAGIC
 """The bytes at the beginning and the end of a file."""
 
 LARGEST_RECORD = 100_000_000
@@ -27,11 +33,13 @@ LARGEST_RECORD = 100_000_000
 
 MOST_CHANNELS = 10_000
 
-_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _DATA_END = 3, 4, 5, 6, 15
+_MESSAGE, _CHUNK, _DATA_END = 5, 6, 15
 _HEAD = struct.Struct("<BQ")
-_SHORT, _WORD, _LONG = struct.Struct("<H"), struct.Struct("<I"), struct.Struct("<Q")
-_MESSAGE_HEAD = struct.Struct("<HIQQ")
-_CHUNK_HEAD = struct.Struct("<QQQI")
+_PARTS: Mapping[int, Callable[[ReadDataStream], Any]] = {
+    3: Schema.read,
+    4: Channel.read,
+    _CHUNK: Chunk.read,
+}
 
 
 class McapChannel(NamedTuple):
@@ -52,10 +60,14 @@ class McapMessage(NamedTuple):
     place: int
 
 
-class _Record(NamedTuple):
-    kind: int
-    content: bytes
-    place: int
+class _Content(BytesIO):
+    """The content of a record, which has all that is read of it."""
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        data = super().read(size)
+        if size is not None and len(data) < size:
+            raise EndOfFile
+        return data
 
 
 def read_messages(path: Path, form: FileFormat) -> Iterator[McapMessage]:
@@ -64,31 +76,12 @@ def read_messages(path: Path, form: FileFormat) -> Iterator[McapMessage]:
     with opened(path) as stream:
         if stream.read(len(MAGIC)) != MAGIC:
             raise form.refused(path, "it does not begin as MCAP does", 0)
-        for record in _records(stream, path, form):
-            if record.kind == _DATA_END:
+        for kind, content, place in contents.records(stream):
+            if kind == _DATA_END:
                 return
-            if record.kind != _CHUNK:
-                yield from contents.add(record)
-                continue
-            for inner in contents.chunk(record):
-                yield from contents.add(inner)
+            yield from contents.messages(kind, content, place)
     why = "it ends before its data do; it has been cut short, or is still being written"
     raise form.refused(path, why)
-
-
-def _records(stream: IO[bytes], path: Path, form: FileFormat) -> Iterator[_Record]:
-    place = len(MAGIC)
-    while len(head := stream.read(_HEAD.size)) == _HEAD.size:
-        kind, size = _HEAD.unpack(head)
-        if size > LARGEST_RECORD:
-            why = f"a record has {size:,} bytes: at most {LARGEST_RECORD:,} are read"
-            raise form.refused(path, why, place)
-        content = stream.read(size)
-        if len(content) < size:
-            why = "a record begins that has more bytes than are left; it has been cut short"
-            raise form.refused(path, why, place)
-        yield _Record(kind, content, place)
-        place += len(head) + size
 
 
 @dataclass(slots=True)
@@ -100,101 +93,81 @@ class _Contents:
     schemas: dict[int, str] = field(default_factory=dict)
     channels: dict[int, McapChannel] = field(default_factory=dict)
 
-    def add(self, record: _Record) -> Iterator[McapMessage]:
-        """The message in a record, if it holds one; schemas and channels are stored."""
+    def records(
+        self, stream: IO[bytes], chunk: int | None = None
+    ) -> Iterator[tuple[int, bytes, int]]:
+        """Kind, content and place of each record, in a ``chunk`` that of the chunk."""
+        at = len(MAGIC)
+        while head := stream.read(_HEAD.size):
+            kind, size = _HEAD.unpack(head.ljust(_HEAD.size, b"\0"))
+            place = at if chunk is None else chunk
+            if size > LARGEST_RECORD:
+                why = f"a record has {size:,} bytes: at most {LARGEST_RECORD:,} are read"
+                raise self.form.refused(self.path, why, place)
+            content = stream.read(size)
+            if len(head) + len(content) < _HEAD.size + size:
+                why = "a record begins that has more bytes than are left; it has been cut short"
+                if chunk is not None:
+                    why = "a record in a chunk is longer than the chunk"
+                raise self.form.refused(self.path, why, place)
+            yield kind, content, place
+            at += _HEAD.size + size
+
+    def messages(self, kind: int, content: bytes, place: int) -> Iterator[McapMessage]:
+        """The messages in a record; schemas and channels are stored."""
+        stream = ReadDataStream(_Content(content))
         try:
-            if record.kind == _MESSAGE:
-                yield self._message(record)
-            elif record.kind == _SCHEMA:
-                self._schema(record.content)
-            elif record.kind == _CHANNEL:
-                self._channel(record.content)
-        except (struct.error, UnicodeDecodeError):
+            record: Any = None
+            if kind == _MESSAGE:
+                record = Message.read(stream, len(content))
+            elif read := _PARTS.get(kind):
+                record = read(stream)
+        except (EndOfFile, struct.error, UnicodeDecodeError, OverflowError):
             why = "a record is shorter than its kind is, or its text is not UTF-8"
-            raise self.form.refused(self.path, why, record.place) from None
+            raise self.form.refused(self.path, why, place) from None
+        match record:
+            case Message():
+                channel = self.channels.get(record.channel_id)
+                if channel is None:
+                    why = f"a message is of channel {record.channel_id}"
+                    why += ", which has not been described before"
+                    raise self.form.refused(self.path, why, place)
+                yield McapMessage(channel, record.log_time, record.data, place)
+            case Schema():
+                self.schemas[record.id] = short(record.name)
+            case Channel():
+                topic, encoding = short(record.topic), short(record.message_encoding)
+                schema = self.schemas.get(record.schema_id, "")
+                self.channels[record.id] = McapChannel(record.id, topic, encoding, schema)
+            case Chunk():
+                whole = BytesIO(self._unpacked(record, place))
+                for inner, part, _ in self.records(whole, place):
+                    if inner != _CHUNK:
+                        yield from self.messages(inner, part, place)
         if len(self.schemas) + len(self.channels) > MOST_CHANNELS:
             why = f"it has more than {MOST_CHANNELS:,} channels and schemas"
-            raise self.form.refused(self.path, why, record.place)
-
-    def chunk(self, record: _Record) -> Iterator[_Record]:
-        """The records of a chunk."""
-        content, place = record.content, record.place
-        try:
-            _, _, size, checksum = _CHUNK_HEAD.unpack_from(content)
-            method, at = _text(content, _CHUNK_HEAD.size)
-            (count,) = _LONG.unpack_from(content, at)
-        except (struct.error, UnicodeDecodeError):
-            raise self.form.refused(self.path, "a chunk ends in its head", place) from None
-        packed = content[at + _LONG.size :]
-        if size > LARGEST_RECORD or count != len(packed):
-            why = f"a chunk has {size:,} bytes, packed {count:,} of {len(packed):,}"
-            expected = f"expected at most {LARGEST_RECORD:,}, and all of them"
-            raise self.form.refused(self.path, why, place, expected=expected)
-        try:
-            whole = _unpacked(packed, method, size)
-        except ValueError as problem:
-            why = f"a chunk cannot be unpacked: {problem}"
-            raise self.form.refused(self.path, why, place) from None
-        if checksum and crc32(whole) != checksum:
-            why = "a chunk is damaged: its checksum is not that of its content"
             raise self.form.refused(self.path, why, place)
-        at = 0
-        while at < size:
-            if size - at < _HEAD.size or (at + _HEAD.size + _HEAD.unpack_from(whole, at)[1] > size):
-                why = "a record in a chunk is longer than the chunk"
-                raise self.form.refused(self.path, why, place)
-            kind, length = _HEAD.unpack_from(whole, at)
-            at += _HEAD.size
-            yield _Record(kind, whole[at : at + length], place)
-            at += length
 
-    def _message(self, record: _Record) -> McapMessage:
-        number, _, time, _ = _MESSAGE_HEAD.unpack_from(record.content)
-        channel = self.channels.get(number)
-        if channel is None:
-            why = f"a message is of channel {number}, which has not been described before"
-            raise self.form.refused(self.path, why, record.place)
-        return McapMessage(channel, time, record.content[_MESSAGE_HEAD.size :], record.place)
-
-    def _schema(self, content: bytes) -> None:
-        (number,) = _SHORT.unpack_from(content)
-        self.schemas[number] = short(_text(content, _SHORT.size)[0])
-
-    def _channel(self, content: bytes) -> None:
-        (number,), (schema,) = _SHORT.unpack_from(content), _SHORT.unpack_from(content, 2)
-        topic, at = _text(content, 2 * _SHORT.size)
-        encoding, _ = _text(content, at)
-        name = self.schemas.get(schema, "")
-        self.channels[number] = McapChannel(number, short(topic), short(encoding), name)
-
-
-def _text(content: bytes, at: int) -> tuple[str, int]:
-    """The length-prefixed text at a position, and the position after it."""
-    (size,) = _WORD.unpack_from(content, at)
-    begin = at + _WORD.size
-    if size > len(content) - begin:
-        raise struct.error
-    return content[begin : begin + size].decode(), begin + size
-
-
-def _unpacked(packed: bytes, method: str, size: int) -> bytes:
-    """The unpacked bytes of a chunk; ``method`` is ``lz4`` (frames), ``zstd``, or empty for none.
-
-    Raises ValueError if the chunk is damaged, has another size, or uses another method.
-    """
-    if not method:
-        content = packed
-    elif method in ("lz4", "zstd"):
-        buffer = bytearray(size)
-        library = cramjam.lz4 if method == "lz4" else cramjam.zstd
+    def _unpacked(self, chunk: Chunk, place: int) -> bytes:
+        """The bytes in a chunk, which are unpacked no further than its size."""
+        size, method, packed = chunk.uncompressed_size, chunk.compression, chunk.data
+        if size > LARGEST_RECORD:
+            why = f"a chunk has {size:,} bytes: at most {LARGEST_RECORD:,} are read"
+            raise self.form.refused(self.path, why, place)
+        why = ""
         try:
-            # It never writes beyond the buffer, whatever size the chunk states
-            count = library.decompress_into(packed, buffer)
-        except cramjam.DecompressionError:
-            raise ValueError(f"it is packed ({method}), and damaged or not of its size") from None
-        content = bytes(buffer[:count])
-    else:
-        raise ValueError("it is packed by another method than lz4 or zstd")
-    if len(content) != size:
-        raise ValueError(f"it has {len(content):,} bytes instead of {size:,}")
-    return content
+            if method == "lz4":
+                packed = LZ4FrameDecompressor().decompress(packed, max_length=size + 1)
+            elif method == "zstd":
+                packed = ZstdDecompressor().stream_reader(packed).read(size + 1)
+            elif method:
+                why = "it is packed by another method than lz4 or zstd"
+        except (RuntimeError, ZstdError):
+            why = f"it is packed ({method}), and damaged"
+        if len(packed) != size:
+            why = why or f"it is damaged or not of its size, {size:,} bytes"
+        elif chunk.uncompressed_crc and crc32(packed) != chunk.uncompressed_crc:
+            why = why or "its checksum is not that of its content"
+        if why:
+            raise self.form.refused(self.path, f"a chunk cannot be unpacked: {why}", place)
+        return packed

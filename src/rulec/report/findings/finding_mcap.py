@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from io import BytesIO
+from itertools import count
 from typing import IO, Any
+
+from mcap.writer import CompressionType, Writer
 
 from rulec.diagnostics import SourceLocation
 from rulec.files.file_messages import UNWRITABLE_FILE
-from rulec.report.findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
 from rulec.report.findings.verdict_finding import (
     COLUMNS,
     FindingContext,
@@ -68,31 +71,38 @@ class McapWriter:
             "drives": str(len(recording.drives)),
             "not_judged": ", ".join(name for name in not_judged if name),
         }
-        messages = (message for finding in recording.findings for message in _messages(finding))
-        write_mcap(
-            self._stream, f"rulec {self._about.version}", _channels(), messages, {"rulec": about}
-        )
+        messages = [message for finding in recording.findings for message in _messages(finding)]
+        # Standard output has no positions
+        content = BytesIO()
+        writer = Writer(content, compression=CompressionType.NONE)
+        writer.start(library=f"rulec {self._about.version}")
+        channels = {}
+        for topic, (name, example) in _EXAMPLES.items():
+            schema = json.dumps({"title": name, **_schema_of(example)}).encode()
+            number = writer.register_schema(name, "jsonschema", schema)
+            channels[topic] = writer.register_channel(topic, "json", number), count()
+        for time, topic, message in sorted(messages, key=lambda message: message[0]):
+            number, places = channels[topic]
+            writer.add_message(number, time, json.dumps(message).encode(), time, next(places))
+        # A file's name need not be Unicode
+        printable = {k: v.encode("utf-8", "backslashreplace").decode() for k, v in about.items()}
+        writer.add_metadata("rulec", printable)
+        writer.finish()
+        self._stream.write(content.getvalue())
 
 
-def _channels() -> tuple[JsonChannel, ...]:
-    return tuple(
-        JsonChannel(topic, name, json.dumps({"title": name, **_schema_of(example)}))
-        for topic, (name, example) in _EXAMPLES.items()
-    )
-
-
-def _messages(finding: VerdictFinding) -> Iterator[TimedMessage]:
-    """The messages of a finding; none if it has no time."""
+def _messages(finding: VerdictFinding) -> Iterator[tuple[int, str, dict[str, Any]]]:
+    """Time (ns), topic and content of a finding's messages; none if it has no time."""
     at_s = finding.from_s if finding.at_s is None else finding.at_s
     if at_s is None:
         return
     begin_ns = max(0, round(at_s * _NS))
     # Without null values, which fit none of the types announced to viewers
     known = {name: value for name, value in finding.row().items() if value is not None}
-    yield TimedMessage(0, begin_ns, json.dumps({"version": 1, **known}))
-    yield TimedMessage(1, begin_ns, json.dumps(_log(finding, begin_ns)))
+    yield begin_ns, "/rulec/findings", {"version": 1, **known}
+    yield begin_ns, "/rulec/log", _log(finding, begin_ns)
     if finding.outcome == "violated" and finding.x is not None and finding.y is not None:
-        yield TimedMessage(2, begin_ns, json.dumps(_scene_update(finding, begin_ns)))
+        yield begin_ns, "/rulec/scene", _scene_update(finding, begin_ns)
 
 
 def _log(finding: VerdictFinding, begin_ns: int) -> dict[str, Any]:
