@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rulec.report.text import highlighting_words as words
+from rulec.report.text import pygments_lexer as words
 
 _MODE = """;;; rulec-mode.el --- Major mode for rulebooks of rulec  -*- lexical-binding: t; -*-
 

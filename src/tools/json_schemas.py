@@ -8,6 +8,7 @@ from inspect import cleandoc
 from typing import Any
 
 import msgspec
+from rulec.report.tests.example_formats import ExamplesRun
 
 from rulec.automata.bundle.bundle_schema import BundleFile
 from rulec.fleet.finding_columns import FindingRowLine
@@ -17,17 +18,16 @@ from rulec.report.findings.verdict_finding import FindingLine
 from rulec.report.maneuvers.envelope_table import EnvelopeLine
 from rulec.report.maneuvers.maneuver_document import ManeuversDocument
 from rulec.report.moments.moment_rows import MomentLine
-from rulec.report.rates.rates_json import RatesDocument
+from rulec.report.rates.rates_table import RatesDocument
 from rulec.report.recordings.format_listing import FormatsDocument
 from rulec.report.rulebooks.audit_report import AuditDocument
-from rulec.report.rulebooks.comparison.diff_json import DiffDocument, TraceData
+from rulec.report.rulebooks.comparison.diff_formats import DiffDocument, TraceData
 from rulec.report.rulebooks.comparison.matrix_report import MatrixDocument
 from rulec.report.rulebooks.lineage_tree import ForestDocument, LineageDocument
 from rulec.report.rulebooks.proof_report import ProofsDocument
-from rulec.report.rulebooks.rule_json import RulesDocument
 from rulec.report.rulebooks.rule_list import RuleListDocument
+from rulec.report.rulebooks.rule_page import RulesDocument
 from rulec.report.rulebooks.word_texts import WordData
-from rulec.report.tests.example_json import ExamplesRun
 from rulec.report.text.listing import ListingDocument
 from rulec.report.verdicts.recording_json import NotDriven, RecordedNotJudged, RecordedVerdict
 from rulec.report.verdicts.running_verdicts import StateRefused, StateVerdict

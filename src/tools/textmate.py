@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from rulec.report.text import highlighting_words as words
+from rulec.report.text import pygments_lexer as words
 
 
 def textmate_grammar() -> str:

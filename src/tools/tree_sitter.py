@@ -12,7 +12,7 @@ from typing import Any, Final
 from lark import Tree
 from lark.grammar import Terminal
 
-from rulec.report.text import highlighting_words as words
+from rulec.report.text import pygments_lexer as words
 from rulec.syntax.keywords import RESERVED
 from rulec.version import __version__
 from tools.language_tokens import (

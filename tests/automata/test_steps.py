@@ -17,7 +17,7 @@ from rulec.logic.formula import Bound, Unary, UnaryOperator
 from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.planning.product.graph_instances import instances
+from rulec.planning.product.possible_instances import instances
 from rulec.resource_limits import COMPILING, in_force
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace, TraceGraph

@@ -18,9 +18,9 @@ from timing import Timed, in_turns, once, processor_time
 import rulec
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.planning import Maneuvers, evaluate, partition_for
-from rulec.planning.product.graph_instances import instances, violations
 from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.product.possible_instances import instances, violations
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.rulebook.loader import parse_rulebook
 from rulec.scenario import ConstantAcceleration, Ego, Obstacle, Road, Scenario

@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from rulec import compile_rulebook, find_maneuvers, navigation_graph, parse_rulebook
-from rulec.planning.ranking.guided_ways import ALIKE
+from rulec.planning.ranking.proven import ALIKE
 from rulec.scenario import MotionBounds
 from support.generators.built_scenes import KINDS, built
 from support.generators.driven_motions import driven, is_free, paths_of

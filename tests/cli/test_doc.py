@@ -10,12 +10,12 @@ import pytest
 from rulec.analysis.audit.provision_coverage import ProvisionState
 from rulec.analysis.lineage.rule_lineage import ConstantKind
 from rulec.cli.main import main
-from rulec.report.rulebooks import rule_provenance
+from rulec.report.rulebooks import document_language as language_module
 from rulec.report.rulebooks.document_language import document_language
 from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from support.builders import rulebook_family as island
 
-SOURCES = Path(rule_provenance.__file__).parent
+SOURCES = Path(language_module.__file__).parent
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -303,7 +303,12 @@ def test_every_text_and_title_is_there_in_each_language(language):
     """What documents say in English, rules and topics that ship: all is said in the others."""
     texts = document_language(load_rulebook("vienna"), language)
     said, constants = set(), {*get_args(ProvisionState), *get_args(ConstantKind)}
-    for name in ("document/book_document", "document/book_rule", "rule_provenance", "audit_report"):
+    for name in (
+        "document/book_document",
+        "document/book_rule",
+        "document_language",
+        "audit_report",
+    ):
         for node in ast.walk(ast.parse((SOURCES / f"{name}.py").read_text(encoding="utf-8"))):
             if isinstance(node, ast.Constant):
                 constants.add(node.value)

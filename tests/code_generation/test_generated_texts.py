@@ -13,9 +13,8 @@ from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.cli.main import main
 from rulec.code_generation.compiled_c import c_library
 from rulec.code_generation.compiled_c.c_library import CLibrary
-from rulec.code_generation.letter_cells import EXCLUDED, LEAF, letter_cells
 from rulec.code_generation.monitor_files import monitor_texts
-from rulec.code_generation.monitor_layout import monitor_layout
+from rulec.code_generation.monitor_layout import EXCLUDED, LEAF, letter_cells, monitor_layout
 from rulec.code_generation.written_names import Identifiers, c_string, in_comment, prefix_of
 from rulec.diagnostics import RulecError
 from rulec.rulebook.rulebook_model import SourceFile

@@ -11,7 +11,7 @@ import pytest
 import rulec
 from rulec.code_generation.compiled_c.c_library import CLibrary
 from rulec.code_generation.monitor_layout import monitor_layout
-from rulec.code_generation.proof.both_monitors import BothMonitors
+from rulec.code_generation.proof.monitor_proof import BothMonitors
 from rulec.code_generation.proof.random_drives import drives, table_drives
 from rulec.rulebook.files.search_path import available_rulebooks
 from support.builders.monitored_books import NARROW

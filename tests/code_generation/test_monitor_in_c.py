@@ -11,7 +11,7 @@ import rulec
 from rulec.api.named_monitor import Monitor
 from rulec.code_generation.compiled_c.c_library import CLibrary, CMonitor
 from rulec.code_generation.monitor_layout import monitor_layout
-from rulec.code_generation.proof.both_monitors import is_no_narrower
+from rulec.code_generation.proof.monitor_proof import is_no_narrower
 from rulec.code_generation.proof.probing_inputs import weighs
 from rulec.diagnostics import RulecError
 from rulec.rulebook.rules.axiom_instances import counts

@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from rulec.cli.commands.writing.lsp import command
-from rulec.language_server.editor_settings import EDITORS, editor_settings
+from rulec.cli.commands.writing.lsp import EDITORS, command, editor_settings
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8")

@@ -7,7 +7,7 @@ from hypothesis import Phase, given, settings
 
 from rulec.api.named_monitor import Monitor
 from rulec.planning import evaluate
-from rulec.planning.product.accepted_edges import accepted_edges
+from rulec.planning.product.graph_product import accepted_edges
 from support.builders.rulebooks import compile_here
 from support.engines.engine import said
 from support.generators.random_maneuvers import Given, scene

@@ -316,7 +316,7 @@ def test_pictures_and_rates(monkeypatch, tmp_path, capsys):
     assert main(["draw", "drive", str(SAMPLE), "-r", "de", "-o", picture]) == 2
     assert "not drawn: a fault of rulec" in capsys.readouterr().err
     monkeypatch.setattr(
-        "rulec.rates.rates_of_findings.rates_of_findings", raising(None, lambda *_, **__: True)
+        "rulec.rates.rule_rates.rates_of_findings", raising(None, lambda *_, **__: True)
     )
     assert main(["rates", str(tmp_path)]) == 2
     assert "no rates: a fault of rulec" in capsys.readouterr().err

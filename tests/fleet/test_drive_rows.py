@@ -7,9 +7,8 @@ import pytest
 
 import rulec
 from rulec.extraction.traces.recorded_drive import Place
-from rulec.fleet.drive_rows import DriveRows, driven_m
+from rulec.fleet.drive_rows import DriveRows, driven_m, judged_by
 from rulec.fleet.finding_columns import COLUMNS, arrow_schema, arrow_table
-from rulec.fleet.judged_by import judged_by
 from rulec.monitoring.moments.drive_facts import facts_of
 from rulec.monitoring.rulebook_edition import rulebook_hash
 from support.builders.fleet_inputs import fleet_rules, lanes, tracks

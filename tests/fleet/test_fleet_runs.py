@@ -21,15 +21,13 @@ from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from rulec.extraction.selection import RequestedDrives
 from rulec.fleet import FleetJudge
-from rulec.fleet.carried_rulebook import carried
+from rulec.fleet.drive_rows import judged_by
 from rulec.fleet.finding_columns import COLUMNS
-from rulec.fleet.judged_by import judged_by
-from rulec.fleet.runs import unit_slices
+from rulec.fleet.fleet_judge import carried
+from rulec.fleet.runs import unit_work
 from rulec.fleet.runs import work_units as units_module
-from rulec.fleet.runs.engines import judged_locally
 from rulec.fleet.runs.fleet_folder import FleetFolder
-from rulec.fleet.runs.fleet_inputs import fleet_inputs
-from rulec.fleet.runs.fleet_run import FleetSettings, run_fleet
+from rulec.fleet.runs.fleet_run import FleetSettings, fleet_inputs, judged_locally, run_fleet
 from rulec.fleet.runs.fleet_summary import as_text
 from rulec.fleet.runs.work_units import work_units
 from rulec.recordings.recording_format import RecordingSource
@@ -152,7 +150,7 @@ def test_any_cut_into_files_and_row_groups_has_the_same_findings(
     for seed in range(chunk * 25, chunk * 25 + 25):
         # Files are cut into pieces, too, and pieces into slices
         monkeypatch.setattr(units_module, "MOST_ROWS", 20 + seed % 50)
-        monkeypatch.setattr(unit_slices, "MOST_TOGETHER", 10 + seed % 70)
+        monkeypatch.setattr(unit_work, "MOST_TOGETHER", 10 + seed % 70)
         folder = cut_into(traces, tmp_path / f"in{seed}", seed)
         run([folder], tmp_path / f"out{seed}")
         assert found_in(tmp_path / f"out{seed}") == expected, seed
@@ -160,7 +158,7 @@ def test_any_cut_into_files_and_row_groups_has_the_same_findings(
 
 def test_recordings_that_are_cut_are_put_together(tmp_path, monkeypatch):
     monkeypatch.setattr(units_module, "MOST_ROWS", 30)
-    monkeypatch.setattr(unit_slices, "MOST_TOGETHER", 40)
+    monkeypatch.setattr(unit_work, "MOST_TOGETHER", 40)
     table = pyarrow.table(tracks([0, 1]))
     whole = FleetJudge(fleet_rules(), lanes(tmp_path))(table)
     done = run([cut_into(table, tmp_path / "in", 3)], tmp_path / "out", road_map=lanes(tmp_path))

@@ -7,9 +7,9 @@ import pytest
 from pyarrow import parquet
 
 from rulec.diagnostics import RulecError
-from rulec.fleet.runs import drive_keys, unit_slices
+from rulec.fleet.runs import unit_work
 from rulec.fleet.runs import work_units as units_module
-from rulec.fleet.runs.unit_slices import slices_of_unit
+from rulec.fleet.runs.unit_work import slices_of_unit
 from rulec.fleet.runs.work_units import work_units
 
 MOST, AT_ONCE = 60, 25
@@ -17,9 +17,9 @@ MOST, AT_ONCE = 60, 25
 
 @pytest.fixture(autouse=True)
 def _small(monkeypatch):
-    monkeypatch.setattr(unit_slices, "MOST_TOGETHER", MOST)
-    monkeypatch.setattr(unit_slices, "_FEWEST_MERGED", 10)
-    monkeypatch.setattr(drive_keys, "ROWS_AT_ONCE", AT_ONCE)
+    monkeypatch.setattr(unit_work, "MOST_TOGETHER", MOST)
+    monkeypatch.setattr(unit_work, "_FEWEST_MERGED", 10)
+    monkeypatch.setattr(units_module, "ROWS_AT_ONCE", AT_ONCE)
     monkeypatch.setattr(units_module, "MOST_ROWS", 200)
 
 
@@ -89,7 +89,7 @@ def test_rows_that_are_held_do_not_grow_with_the_number_of_drives(drives, tmp_pa
     rows = 4
     read = []
     most = []
-    theirs = unit_slices.keyed_rows
+    theirs = unit_work.keyed_rows
 
     def watched(source, groups, path, *, whole):
         for some in theirs(source, groups, path, whole=whole):
@@ -98,7 +98,7 @@ def test_rows_that_are_held_do_not_grow_with_the_number_of_drives(drives, tmp_pa
             most.append(len(some.codes))
             yield some
 
-    monkeypatch.setattr(unit_slices, "keyed_rows", watched)
+    monkeypatch.setattr(unit_work, "keyed_rows", watched)
     parts = slices_in(written(tmp_path, table_of(drives, rows), [], 1 << 20))
     checked(parts, drives, rows)
     assert max(most) <= AT_ONCE

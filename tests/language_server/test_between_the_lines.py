@@ -5,7 +5,7 @@ import asyncio
 import pytest
 from lsprotocol import types as lsp
 
-from rulec.language_server import lens_commands
+from rulec.language_server import server as server_module
 from rulec.language_server.server import language_server
 from support.editor import edited, shown
 
@@ -197,7 +197,7 @@ def test_lenses_run_examples_and_insert_what_is_missing(watched):
 )
 def test_what_is_missing_is_inserted_where_the_rule_has_moved_to(monkeypatch, typed, inserted):
     server, uri, edits = language_server(), "file:///lenses.rules", []
-    real = lens_commands.example_answer
+    real = server_module.example_answer
 
     def typing_meanwhile(book, rule):
         server.editor.open(uri, typed, 2)
@@ -206,8 +206,8 @@ def test_what_is_missing_is_inserted_where_the_rule_has_moved_to(monkeypatch, ty
     async def taken(params):
         edits.extend(params.edit.changes[uri])
 
-    monkeypatch.setattr(lens_commands, "example_answer", typing_meanwhile)
-    monkeypatch.setattr(lens_commands, "_takes_edits", lambda _: True)
+    monkeypatch.setattr(server_module, "example_answer", typing_meanwhile)
+    monkeypatch.setattr(server_module, "_takes_edits", lambda _: True)
     for name in ("refresh_lenses", "window_show_message"):
         monkeypatch.setattr(server, name, lambda *_: None)
     monkeypatch.setattr(server, "workspace_apply_edit_async", taken)

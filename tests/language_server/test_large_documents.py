@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 from lsprotocol import types as lsp
 
 from rulec.cancellation import CancelledError, is_wanted, step
-from rulec.language_server.names.document_names import names_in_document
-from rulec.language_server.workspace.background_check import (
+from rulec.language_server.names.name_occurrences import names_in_document
+from rulec.language_server.workspace.editor_workspace import Document, EditorWorkspace
+from rulec.language_server.workspace.published_diagnostics import (
     LARGE,
     BackgroundCheck,
     view_around,
 )
-from rulec.language_server.workspace.editor_workspace import Document, EditorWorkspace
 from rulec.resources import rulebooks_folder
 from support.editor import Editor, at
 

@@ -8,10 +8,14 @@ from lsprotocol import types as lsp
 from rulec.language_server.document_outline import folds, outline
 from rulec.language_server.lenses.code_lenses import KnownAnswers, code_lenses
 from rulec.language_server.lenses.inlay_hints import inlay_hints
-from rulec.language_server.names.document_names import names_in_document
 from rulec.language_server.names.hover_texts import hover_text
-from rulec.language_server.names.name_places import declaration_of, references_to
-from rulec.language_server.names.renaming import RefusedRenamingError, placeholder
+from rulec.language_server.names.name_occurrences import names_in_document
+from rulec.language_server.names.renaming import (
+    RefusedRenamingError,
+    declaration_of,
+    placeholder,
+    references_to,
+)
 from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.language_server.writing.quick_fixes import code_action, quick_fixes
 from rulec.language_server.writing.word_completion import completions, signature

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 import rulec
-from rulec.language_server.names.document_names import names_in_document
+from rulec.language_server.names.name_occurrences import names_in_document
 from rulec.language_server.names.renaming import changed_text, renamed
 from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.resources import rulebooks_folder

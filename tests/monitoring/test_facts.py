@@ -12,7 +12,7 @@ from rulec.book_tests.example_coverage import coverage
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.verify import verify
-from rulec.planning.product.graph_instances import instances
+from rulec.planning.product.possible_instances import instances
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace, TraceGraph
 

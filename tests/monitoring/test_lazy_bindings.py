@@ -13,9 +13,9 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.batch_verify import verify_chunk
 from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.online.monitor_sources import replay_trace
-from rulec.planning.product.graph_instances import instances, violations
 from rulec.planning.product.graph_product import explore
 from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.product.possible_instances import instances, violations
 from rulec.resource_limits import in_force
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace

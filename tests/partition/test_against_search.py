@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 from rulec import compile_rulebook, navigation_graph
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.verify import verify
-from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.product.possible_instances import instances
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace.trace_model import all_traces

@@ -12,7 +12,7 @@ from rulec.api.named_monitor import Monitor
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Unary, UnaryOperator
-from rulec.planning.product.graph_instances import instances
+from rulec.planning.product.possible_instances import instances
 from rulec.planning.trace_history import only_trace, past_of
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary.partial_values import UNKNOWN

@@ -7,9 +7,9 @@ from math import comb
 from hypothesis import given
 
 from rulec.automata.mealy_monitor import stutter_invariant
-from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import explore
 from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.product.possible_instances import instances
 from rulec.planning.ranking.cell_tracks import cell_tracks
 from rulec.planning.ranking.homotopy import HomotopyClasses, count_classes, variants
 from rulec.trace import TraceGraph

@@ -6,7 +6,7 @@ from itertools import product
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.planning.probability.event_probability import none_of
+from rulec.planning.probability.violation_events import none_of
 
 WEIGHTS = {
     "a": {0: Fraction(1, 2), 1: Fraction(1, 2)},

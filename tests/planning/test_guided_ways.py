@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from rulec import RulecError, compile_rulebook, find_maneuvers, parse_rulebook
 from rulec.planning.ranking import proven
 from rulec.planning.ranking.cheapest import cheapest
-from rulec.planning.ranking.guided_ways import ALIKE, beam_ways, guided_ways
-from rulec.planning.ranking.proven import with_trajectory
+from rulec.planning.ranking.proven import ALIKE, beam_ways, guided_ways, with_trajectory
 from rulec.scenario import (
     ConstantAcceleration,
     Ego,

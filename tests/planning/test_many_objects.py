@@ -24,9 +24,9 @@ from rulec.logic.formula import (
     UnaryOperator,
 )
 from rulec.monitoring.batch.verify import verify
-from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import explore
 from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.product.possible_instances import instances
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Enumeration, ObjectType, Vocabulary

@@ -5,9 +5,9 @@ from fractions import Fraction
 from hypothesis import given
 
 from rulec.automata.compiler import compile_rulebook
-from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.product.possible_instances import instances
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.trace import TraceGraph
 from rulec.trace.trace_model import paths

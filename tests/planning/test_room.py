@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 
 from rulec import navigation_graph
 from rulec.diagnostics import RulecError
-from rulec.planning.product.graph_instances import HARD, SOFT, instances
 from rulec.planning.product.graph_product import explore, largest_product
 from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.product.possible_instances import HARD, SOFT, instances
 from rulec.planning.ranking.least_violating import front, ranked, with_penalty
 from rulec.planning.ranking.penalties import ranks_of
 from support.generators.random_graphs import graphs

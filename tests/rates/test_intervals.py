@@ -9,11 +9,13 @@ from hypothesis import strategies as st
 from scipy.special import gammaincinv
 
 from rulec.diagnostics import RulecError
-from rulec.rates.drive_bootstrap import DRIVES_TOGETHER, bootstrapped, percentile_interval
 from rulec.rates.exact_intervals import (
+    DRIVES_TOGETHER,
     ClusterSizes,
     binomial_interval,
+    bootstrapped,
     clustered_interval,
+    percentile_interval,
     poisson_interval,
 )
 

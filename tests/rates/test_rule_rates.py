@@ -6,7 +6,7 @@ import pytest
 from scipy import stats
 
 from rulec.diagnostics import RulecError
-from rulec.rates.rates_of_findings import rates_of_findings
+from rulec.rates.rule_rates import rates_of_findings
 from rulec.report.rates.rates_table import as_text
 from rulec.trace.formats.arrow.parquet import write_parquet
 

@@ -15,9 +15,8 @@ from rulec.report.automata.automaton_layout import (
     draw,
     is_too_large,
 )
-from rulec.report.automata.automaton_model import Automaton, Transition, automaton_of
+from rulec.report.automata.automaton_model import Automaton, Transition, as_dot, automaton_of
 from rulec.report.automata.automaton_picture import as_picture
-from rulec.report.automata.automaton_text import as_dot
 from rulec.report.pictures.drawing.canvas import text_width
 from rulec.report.pictures.drawing.picture_formats import as_svg
 from support.builders.rulebooks import P, Q, book, compile_here, rule

@@ -3,8 +3,7 @@
 import click
 import pytest
 
-from rulec.report.automata.automaton_model import Automaton, Transition
-from rulec.report.automata.automaton_text import MOST_LINES, as_text
+from rulec.report.automata.automaton_model import MOST_LINES, Automaton, Transition, as_text
 
 LONG = " or ".join(f"signal_{n}" for n in range(100))
 

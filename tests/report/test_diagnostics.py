@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import Diagnostic, Label, RulecError, Source, Span
-from rulec.diagnostics.source_text import SourceLocation
+from rulec.diagnostics.diagnostic import SourceLocation
 from rulec.report.findings.diagnostics_text import MAX_WIDTH, Complaints, render_diagnostics
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.monitoring.explain.explained_parts import Part
-from rulec.report.verdicts.table_folding import fitting, folded, head, width
+from rulec.report.verdicts.violation_table import fitting, folded, head, width
 from support.builders.rulebooks import always, both, implies, no
 
 A, B, C = (Atom(f"a_signal_with_a_long_name_{name}") for name in "abc")

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.monitoring.verdict import ConditionalOutcome
-from rulec.report.verdicts.outcome_cases import fewest_cases
+from rulec.report.verdicts.verdict_report import fewest_cases
 
 VALUES = {"a": (True, False), "b": (True, False), "c": (True, False), "light": ("red", "green")}
 EVERY = [dict(zip(VALUES, values, strict=True)) for values in product(*VALUES.values())]

@@ -5,9 +5,8 @@ import signal
 import pytest
 
 from rulec.cli.main import main
-from rulec.report.text import patience as module
-from rulec.report.text.console import progress
-from rulec.report.text.patience import patience
+from rulec.report.text import console as module
+from rulec.report.text.console import patience, progress
 
 NEVER_SILENT_FOR_S = 2
 

@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from rulec.planning import SceneReading, evaluate, partition_for
     from rulec.planning.probability.rule_probability import alternative_counts, rule_probabilities
     from rulec.rates.drive_counts import GroupKey
-    from rulec.rates.rates_of_findings import rates_of_findings
+    from rulec.rates.rule_rates import rates_of_findings
     from rulec.recordings.recording import Recording
     from rulec.recordings.recording_files import is_recording, read_recording, read_recordings
     from rulec.recordings.recording_format import RecordingSource

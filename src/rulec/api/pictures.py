@@ -15,8 +15,7 @@ from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.partition import NavigationGraph
 from rulec.planning import Maneuvers
-from rulec.planning.product.accepted_edges import accepted_edges
-from rulec.planning.product.graph_product import explore
+from rulec.planning.product.graph_product import accepted_edges, explore
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.recordings.recording_messages import NOT_IN_RECORDING

@@ -49,9 +49,8 @@ if TYPE_CHECKING:
     from rulec.extraction.selection import RequestedDrives, assumption_options
     from rulec.extraction.traffic_thresholds import threshold_options
     from rulec.files import file_messages
-    from rulec.fleet.drive_rows import DriveRows
+    from rulec.fleet.drive_rows import DriveRows, judged_by
     from rulec.fleet.finding_columns import COLUMNS
-    from rulec.fleet.judged_by import judged_by
     from rulec.fleet.runs import fleet_summary
     from rulec.fleet.runs.fleet_run import FleetRun, FleetSettings, run_fleet
     from rulec.language_server.server import serve
@@ -72,11 +71,11 @@ if TYPE_CHECKING:
     from rulec.planning.ranking.cheapest import Maneuver
     from rulec.planning.trace_history import read_past
     from rulec.rates.drive_counts import GroupKey
-    from rulec.rates.rates_of_findings import rates_of_findings
+    from rulec.rates.rule_rates import rates_of_findings
     from rulec.recordings.recording_files import is_beside_recordings
     from rulec.recordings.recording_format import RecordingSource
     from rulec.report import json_document
-    from rulec.report.automata import automaton_picture, automaton_text
+    from rulec.report.automata import automaton_model, automaton_picture
     from rulec.report.automata.automaton_layout import is_too_large
     from rulec.report.automata.automaton_model import Automaton
     from rulec.report.findings import diagnostics_text
@@ -91,21 +90,19 @@ if TYPE_CHECKING:
     from rulec.report.findings.junit import JUnitWriter
     from rulec.report.findings.sarif import SarifWriter, as_sarif
     from rulec.report.findings.verdict_finding import FindingContext, RecordingFindings
-    from rulec.report.maneuvers import maneuver_json, maneuver_report, maneuver_table
+    from rulec.report.maneuvers import maneuver_json, maneuver_report
     from rulec.report.maneuvers.envelope_table import write_envelopes
-    from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
-    from rulec.report.maneuvers.maneuver_table import ManeuverCounts
+    from rulec.report.maneuvers.maneuver_report import ManeuverAnswers, ManeuverCounts
     from rulec.report.moments import moment_rows, word_values
     from rulec.report.pictures.drawing import picture_formats
     from rulec.report.pictures.drawing.picture_formats import Drawing
-    from rulec.report.rates import rates_json, rates_table
+    from rulec.report.rates import rates_table
     from rulec.report.rates.rates_picture import rates_drawing
     from rulec.report.recordings import format_listing
     from rulec.report.rulebooks import (
         audit_report,
         lineage_tree,
         proof_report,
-        rule_json,
         rule_list,
         rule_page,
         word_texts,
@@ -113,13 +110,13 @@ if TYPE_CHECKING:
     from rulec.report.rulebooks.comparison import diff_formats, matrix_report, topic_report
     from rulec.report.rulebooks.rule_page import RulePage, page_of
     from rulec.report.rulebooks.word_texts import readers_of, words_as_json
-    from rulec.report.tests import example_json, example_junit, example_text
+    from rulec.report.tests import example_formats, example_text
     from rulec.report.tests.example_text import Besides
     from rulec.report.text import listing
     from rulec.report.text.listing import Listed
     from rulec.report.text.outgoing import outgoing
-    from rulec.report.verdicts import running_verdicts, side_by_side, verdict_json, verdict_report
-    from rulec.report.verdicts.batch_table import BatchTally
+    from rulec.report.verdicts import running_verdicts, verdict_json, verdict_report
+    from rulec.report.verdicts.batch_table import BatchTally, as_columns
     from rulec.report.verdicts.recording_answer import AnswerLayout
     from rulec.report.verdicts.recording_json import as_json as recording_line
     from rulec.report.verdicts.violation_table import tables

@@ -14,7 +14,7 @@ from rulec.cache.keeping import keeping
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.interruption import is_interrupted
-from rulec.cli.options.invocation import Invocation, invocation_of
+from rulec.cli.options.verb_class import Invocation, invocation_of
 from rulec.cli.verb_table import (
     COMMANDS,
     FORMER,
@@ -27,7 +27,7 @@ from rulec.cli.verb_table import (
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_names import naming_options
 from rulec.diagnostics.fault_messages import faults_found
-from rulec.report.text.patience import patience
+from rulec.report.text.console import patience
 from rulec.report.text.terminal_text import colored, styled, visible, wants_color
 from rulec.version import __version__
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import click
 
 from rulec.cli import lazy_imports as lazy
-from rulec.cli.options.invocation import invocation_of
+from rulec.cli.options.verb_class import invocation_of
 from rulec.cli.verb_table import FORMER, OTHER_QUESTIONS, VERBS
 from rulec.diagnostics import nearest_name
 

@@ -10,8 +10,7 @@ from keyword import kwlist
 from pathlib import Path
 
 from rulec.code_generation.c_files import c_header, c_source, head_lines, in_own_names
-from rulec.code_generation.field_spelling import FieldSpelling
-from rulec.code_generation.input_fields import RULE, TYPE
+from rulec.code_generation.input_fields import RULE, TYPE, FieldSpelling
 from rulec.code_generation.monitor_layout import MonitorLayout
 from rulec.code_generation.written_names import Identifiers, in_comment, prefix_of
 from rulec.files.text_templates import Places, filled

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from rulec.code_generation.c_files import c_header, c_source, head_lines, in_own_names
-from rulec.code_generation.field_spelling import FieldSpelling, meaning
-from rulec.code_generation.input_fields import RULE, TYPE
+from rulec.code_generation.input_fields import RULE, TYPE, FieldSpelling, meaning
 from rulec.code_generation.monitor_layout import MonitorLayout
 from rulec.code_generation.written_names import in_comment, prefix_of, rust_string
 from rulec.files.text_templates import filled

@@ -5,9 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict
 
-from rulec.diagnostics.diagnostic import Diagnostic, Fix, Label, RulecError, Severity
-from rulec.diagnostics.source_text import SourceLocation, Span
+from rulec.diagnostics.diagnostic import (
+    Diagnostic,
+    Fix,
+    Label,
+    RulecError,
+    Severity,
+    SourceLocation,
+    Span,
+)
 from rulec.diagnostics.ways_out import Help, offers_of
+from rulec.resources import install_command
 from rulec.value_display import short_repr
 
 if TYPE_CHECKING:
@@ -87,3 +95,20 @@ class Code:
     ) -> RulecError:
         """Make an exception with one diagnostic of this code."""
         return RulecError(self.at(place, message, help=help, **details))
+
+
+def missing_package(
+    code: Code,
+    task: str,
+    package: str,
+    extra: str,
+    place: SourceLocation | None = None,
+    *,
+    otherwise: str = "",
+) -> RulecError:
+    """Say that a ``task`` needs a package, which extra installs it, and the alternative."""
+    return code.error(
+        place,
+        f"{task} takes the package `{package}`, which is not installed",
+        help=f"`{install_command(extra)}`" + (f", or {otherwise}" if otherwise else ""),
+    )

@@ -9,8 +9,13 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from rulec.diagnostics.code import Code
-from rulec.diagnostics.diagnostic import Diagnostic, RulecError, as_answer, with_place
-from rulec.diagnostics.source_text import SourceLocation
+from rulec.diagnostics.diagnostic import (
+    Diagnostic,
+    RulecError,
+    SourceLocation,
+    as_answer,
+    with_place,
+)
 from rulec.version import __version__
 
 FAULT = Code(

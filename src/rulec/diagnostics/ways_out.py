@@ -6,9 +6,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from rulec.diagnostics.diagnostic import Fix, Offer
+from rulec.diagnostics.diagnostic import Fix, Offer, SourceLocation, Span
 from rulec.diagnostics.phrases import nearest_name
-from rulec.diagnostics.source_text import SourceLocation, Span
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -230,3 +231,23 @@ def without_null(source: Source) -> Source:
             help="give a file of plain text in UTF-8",
         )
     return source
+
+
+_HEAD_BYTES: Final = 4096
+_KINDS: Final = (
+    (rb'"format": "rulec comp', "it is a compiled rulebook: `rulec verify TRAFFIC -r {}` uses it"),
+    (rb"\A(?:\s|#.*)*(?:rulebook|vocabulary)\s", "it is a source of rules: see `rulec check {}`"),
+    (rb'"outcome": ?|\Akind,.*,outcome,', "it has findings, which `rulec rates {}` counts"),
+    (rb'"satisfied": ?', "it has verdicts of `rulec verify`; give what was judged"),
+    (rb'"states": ?|\Atrace,step,', "it has traces, which `rulec verify {} -r de` judges"),
+    (rb"(?m)^\[+(?:road|obstacle)", "it is a scenario, for `rulec maneuvers {} -r esterle2019`"),
+)
+"""What is found at the beginning of a file, and what to do with it."""
+
+
+def what_reads(file: str) -> str:
+    """Help that says what a file of rulec's own is, and which verb reads it; empty for others."""
+    head = b""
+    with suppress(RulecError, ValueError), opened(Path(file)) as stream:
+        head = stream.read(_HEAD_BYTES)
+    return next((text.format(file) for sign, text in _KINDS if re.search(sign, head)), "")

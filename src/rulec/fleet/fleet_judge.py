@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
+from rulec.automata.bundle.bundle_file import from_json, read_signed
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.selection import RequestedDrives
-from rulec.fleet.carried_rulebook import CompiledRules, carried
-from rulec.fleet.drive_rows import DriveRows
+from rulec.fleet.drive_rows import DriveRows, judged_by
 from rulec.fleet.finding_columns import arrow_table
-from rulec.fleet.fleet_messages import unnamed_drives
-from rulec.fleet.judged_by import judged_by
-from rulec.fleet.table_kind import SeenKeys, keys_of, kind_of
-from rulec.fleet.table_recordings import TrackTableJudge
-from rulec.fleet.table_traces import TraceTableJudge
+from rulec.fleet.fleet_messages import not_compiled, unnamed_drives
+from rulec.fleet.table_recordings import (
+    SeenKeys,
+    TraceTableJudge,
+    TrackTableJudge,
+    keys_of,
+    kind_of,
+)
 from rulec.monitoring.assumptions import Assumptions
 from rulec.recordings.road_map import RoadMap
 from rulec.trace.formats import arrow as arrow_tables
@@ -92,3 +98,42 @@ def _as_table(table: Any) -> Any:
             "map_groups give batch_format='pyarrow'"
         )
     return arrow_tables.with_plain_texts(table)
+
+
+CompiledRules: TypeAlias = str | Path | bytes | CompiledRulebook
+"""The path of a compiled file, its content, or a rulebook already compiled or read."""
+
+_MOST_KEPT = 4
+
+
+@dataclass(frozen=True, slots=True)
+class CarriedRulebook:
+    """A rulebook to send to other processes; ``name`` is its file's name in messages."""
+
+    content: bytes | CompiledRulebook
+    name: str
+
+    def read(self) -> CompiledRulebook:
+        """The rulebook; a file is parsed once per process. Raises RulecError R0404."""
+        if isinstance(self.content, CompiledRulebook):
+            return self.content
+        return _read(self.content, self.name)
+
+
+@lru_cache(maxsize=_MOST_KEPT)
+def _read(content: bytes, name: str) -> CompiledRulebook:
+    return from_json(content, name)
+
+
+def carried(rules: CompiledRules) -> CarriedRulebook:
+    """A rulebook to send to other processes. Raises RulecError R0404, R0701, R0711 for a source."""
+    if isinstance(rules, CompiledRulebook):
+        return CarriedRulebook(rules, rules.name)
+    if isinstance(rules, bytes):
+        result = CarriedRulebook(rules, "compiled rulebook")
+    else:
+        if Path(rules).suffix != ".json":
+            raise not_compiled(str(rules))
+        result = CarriedRulebook(read_signed(Path(rules)), str(rules))
+    result.read()
+    return result

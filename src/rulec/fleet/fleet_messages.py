@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from rulec.diagnostics import RulecError, SourceLocation, first_of, named
-from rulec.diagnostics.code import Code
-from rulec.diagnostics.missing_package import missing_package
-from rulec.files.own_kinds import what_reads
+from rulec.diagnostics.code import Code, missing_package
+from rulec.files.read_files import what_reads
 from rulec.recordings.recording_messages import NET_MISSING
 
 CUT_DRIVE = Code(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from lsprotocol import types as lsp
 
 from rulec.diagnostics import Span
-from rulec.language_server.names.document_names import DocumentNames
+from rulec.language_server.names.name_occurrences import DocumentNames
 from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula

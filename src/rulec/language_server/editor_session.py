@@ -4,22 +4,34 @@ from __future__ import annotations
 
 import asyncio
 import gc
+import logging
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 from lsprotocol import types as lsp
-from pygls.exceptions import JsonRpcException, JsonRpcInternalError, JsonRpcParseError
+from pygls.exceptions import (
+    JsonRpcException,
+    JsonRpcInternalError,
+    JsonRpcInvalidParams,
+    JsonRpcInvalidRequest,
+    JsonRpcParseError,
+    JsonRpcServerNotInitialized,
+)
 from pygls.lsp.server import LanguageServer
+from pygls.protocol import LanguageServerProtocol
 
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.language_server.lenses.code_lenses import KnownAnswers
-from rulec.language_server.names.document_names import DocumentNames, names_in_document
-from rulec.language_server.strict_protocol import UNREADABLE, StrictProtocol
+from rulec.language_server.names.name_occurrences import DocumentNames, names_in_document
 from rulec.language_server.workspace import published_diagnostics as published
-from rulec.language_server.workspace.background_check import LARGE, BackgroundCheck, view_around
 from rulec.language_server.workspace.editor_workspace import Document, EditorWorkspace
+from rulec.language_server.workspace.published_diagnostics import (
+    LARGE,
+    BackgroundCheck,
+    view_around,
+)
 from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.syntax.incremental.parsed_text import MOST_CHARACTERS
 from rulec.version import __version__
@@ -169,3 +181,72 @@ def collect_in_pauses() -> None:
     """Leave full garbage collections to pauses: one takes 0.1 s, a noticeable delay."""
     young, middle, _ = gc.get_threshold()
     gc.set_threshold(young, middle, _NEVER)
+
+
+UNREADABLE = (ValueError, RecursionError)
+"""What reading a message raises that is not JSON, or is nested too deeply."""
+
+
+def _is_no_refusal(record: logging.LogRecord) -> bool:
+    """Whether a log record is about more than a refusal, which its reply explains already.
+
+    Of a message whose parts do not fit its method, and of a reply that cannot be written, a line
+    stays, and not the traceback below it.
+    """
+    record.msg, record.args = record.getMessage().partition("\n")[0], ()
+    problem = record.exc_info[1] if record.exc_info else None
+    if isinstance(problem, OSError) and record.msg.startswith("Error sending data"):
+        record.exc_info = None
+    kinds = (JsonRpcException, *(UNREADABLE if record.name == "pygls.server" else ()))
+    return not isinstance(problem, kinds)
+
+
+# Editors show each error logged by pygls as a crash of the server, even for an invalid new name.
+for _logger in ("pygls.protocol.json_rpc", "pygls.server"):
+    logging.getLogger(_logger).addFilter(_is_no_refusal)
+
+
+_TAKEN = "a command takes two texts: a document's address and a rule's name"
+
+
+def _names_a_rule(message: Any) -> bool:
+    """Whether a command has its arguments, without which pygls would call it all the same."""
+    arguments = getattr(getattr(message, "params", None), "arguments", None) or ()
+    return len(arguments) == 2 and all(isinstance(one, str) for one in arguments)
+
+
+class StrictProtocol(LanguageServerProtocol):
+    """Sends an error to the waiting client where pygls would only log it."""
+
+    def structure_message(self, data: dict[str, Any]) -> Any:
+        """A message as an object; an invalid request is refused."""
+        try:
+            return super().structure_message(data)
+        except JsonRpcException as problem:
+            if "id" in data and "method" in data:
+                self.refuse(data["id"], problem)
+            raise
+
+    def handle_message(self, message: Any) -> None:
+        """Answer a message, or refuse it: invalid, too early, or too late."""
+        number, method = (getattr(message, name, None) for name in ("id", "method"))
+        is_begun = self._workspace is not None or method in (lsp.INITIALIZE, lsp.EXIT)
+        if getattr(message, "jsonrpc", "") != self.VERSION:
+            number = message.get("id") if isinstance(message, dict) else number
+            self.refuse(number, JsonRpcInvalidRequest("this is no message of JSON-RPC 2.0"))
+        elif method == lsp.INITIALIZE and self._workspace is not None:
+            # pygls would begin anew, without the documents that are open.
+            self.refuse(number, JsonRpcInvalidRequest("the server has been initialized already"))
+        elif is_begun and method == lsp.WORKSPACE_EXECUTE_COMMAND and not _names_a_rule(message):
+            self.refuse(number, JsonRpcInvalidParams(_TAKEN))
+        elif is_begun and not (self._shutdown and method and number is not None):
+            super().handle_message(message)
+        elif number is not None and is_begun:
+            self.refuse(number, JsonRpcInvalidRequest("the server has been shut down"))
+        elif number is not None:
+            self.refuse(number, JsonRpcServerNotInitialized())
+
+    def refuse(self, number: Any, problem: JsonRpcException) -> None:
+        """Reply with an error, also to a message without a number."""
+        error = {"code": problem.code, "message": problem.message}
+        self._send_data({"jsonrpc": self.VERSION, "id": number, "error": error})

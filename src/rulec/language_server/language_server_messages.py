@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from rulec.diagnostics import RulecError
-from rulec.diagnostics.code import Code
-from rulec.diagnostics.missing_package import missing_package
+from rulec.diagnostics.code import Code, missing_package
 
 LANGUAGE_SERVER_UNAVAILABLE = Code(
     "R0760",

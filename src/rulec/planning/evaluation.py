@@ -9,10 +9,9 @@ from rulec.monitoring.fault_containment import without_words
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged
 from rulec.partition import NavigationGraph
 from rulec.planning.maneuvers import AS_WRITTEN, Maneuvers
-from rulec.planning.product.graph_instances import HARD
 from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
-from rulec.planning.product.possible_instances import not_judged
+from rulec.planning.product.possible_instances import HARD, not_judged
 from rulec.planning.rule_instances import (
     SceneReading,
     bind_rules,

@@ -18,7 +18,6 @@ from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.monitoring.uncertainty.untold_names import untold_names
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged, Verdict, Violation
 from rulec.partition import NavigationGraph, dead_ends, emergencies
-from rulec.planning.product.graph_instances import HARD, SOFT, violations
 from rulec.planning.product.graph_product import (
     Joint,
     Memory,
@@ -26,6 +25,7 @@ from rulec.planning.product.graph_product import (
     explore,
 )
 from rulec.planning.product.node_transformers import NodeTransformers, node_transformers
+from rulec.planning.product.possible_instances import HARD, SOFT, violations
 from rulec.planning.ranking.cell_tracks import CellTracks, cell_tracks
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_classes, variants

@@ -19,7 +19,7 @@ from rulec.monitoring.verdict import NO_PAST, CarriedState
 from rulec.partition import NavigationGraph, PartitionName
 from rulec.planning.planning_messages import TWO_PARTITIONS, UNFITTING_PAST
 from rulec.planning.product.graph_instance import GraphInstance
-from rulec.planning.product.graph_instances import instances
+from rulec.planning.product.possible_instances import instances
 from rulec.rulebook.rulebook_model import Rulebook, Strength
 from rulec.scenario import Obstacle, Scenario
 from rulec.trace import State, Trace, TraceGraph, Value

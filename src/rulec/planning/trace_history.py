@@ -19,7 +19,7 @@ from rulec.monitoring.online.running_monitor import RunningMonitor
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import CarriedState
 from rulec.planning.planning_messages import UNFITTING_PAST
-from rulec.planning.product.graph_instances import HARD
+from rulec.planning.product.possible_instances import HARD
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import Trace, TraceGraph
 from rulec.trace.formats.trace_files import read_traces

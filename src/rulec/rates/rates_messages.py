@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.diagnostics.code import Code
-from rulec.diagnostics.missing_package import missing_package
-from rulec.files.own_kinds import what_reads
+from rulec.diagnostics.code import Code, missing_package
+from rulec.files.read_files import what_reads
 
 JUDGED_OTHERWISE = Code(
     "R0715",

@@ -9,22 +9,20 @@ from typing import Any
 
 import numpy as np
 
-from rulec.rates.drive_bootstrap import (
-    DRIVES_TOGETHER,
-    REPLICATES,
-    Sums,
-    bootstrapped,
-    percentile_interval,
-)
 from rulec.rates.drive_counts import Counted, DriveCounts, GroupKey, RuleTitle
 from rulec.rates.exact_intervals import (
+    DRIVES_TOGETHER,
+    REPLICATES,
     ClusterSizes,
     Interval,
+    Sums,
     binomial_interval,
+    bootstrapped,
     clustered_interval,
+    percentile_interval,
     poisson_interval,
 )
-from rulec.rates.finding_rows import FindingRow
+from rulec.rates.finding_rows import FindingRow, finding_files, finding_rows
 from rulec.value_display import Rows, short_repr
 
 S_PER_HOUR = 3600.0
@@ -344,3 +342,18 @@ def _as_row(rates: RuleRates, by: Sequence[GroupKey]) -> dict[str, Any]:
 
 RATES = ("per_hour", "per_1000_km", "per_opportunity")
 _PLAIN = [field for field in fields(RuleRates) if field.name not in (*RATES, "group")]
+
+
+def rates_of_findings(
+    paths: Sequence[str], by: Sequence[GroupKey] = (), *, confidence: float = 0.95, seed: int = 0
+) -> ViolationRates:
+    """The rates of all drives in some files, and in the Parquet files of folders.
+
+    Raises RulecError R0701 for a file that cannot be read, R0715 if drives were judged differently,
+    R0716 for files without drives, R0706 without pyarrow, R0717 without scipy.
+    """
+    counted = Counted(tuple(dict.fromkeys(by)))
+    for file in finding_files(paths):
+        counted.add(str(file), finding_rows(file))
+    counted.close(paths)
+    return violation_rates(counted, confidence=confidence, seed=seed)

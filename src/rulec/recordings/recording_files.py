@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, first_of, named
 from rulec.diagnostics.fault_messages import contained
-from rulec.files.own_kinds import what_reads
-from rulec.files.read_files import is_folder, opened
+from rulec.files.read_files import is_folder, opened, what_reads
 from rulec.recordings.encodings.csv_head import PARQUET
 from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.safe_xml import is_xml

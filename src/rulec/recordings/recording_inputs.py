@@ -11,8 +11,7 @@ from pathlib import Path
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.files.file_messages import UNREADABLE_FILE
 from rulec.files.left_alone import LeftAlone, in_words
-from rulec.files.own_kinds import what_reads
-from rulec.files.read_files import is_folder
+from rulec.files.read_files import is_folder, what_reads
 from rulec.files.work_trees import refuse_link_out, tree_of
 from rulec.recordings.encodings.csv_head import PARQUET
 from rulec.recordings.format_table import FORMATS

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Source, SourceLocation, did_you_mean, named
 from rulec.diagnostics.fault_messages import contained
-from rulec.files.own_kinds import what_reads
-from rulec.files.read_files import decoded, opened
+from rulec.files.read_files import decoded, opened, what_reads
 from rulec.recordings.recording_files import is_recording, read_recording
 from rulec.recordings.recording_format import RECORDING, RecordingSource
 from rulec.recordings.recording_messages import OTHER_CHOICE

@@ -24,9 +24,9 @@ from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.explain.margins import Margin
 from rulec.report.findings import diagnostics_json
 from rulec.report.json_document import as_builtins
-from rulec.report.rulebooks import rule_json
-from rulec.report.rulebooks.comparison import diff_json
-from rulec.report.tests import example_json
+from rulec.report.rulebooks import rule_page
+from rulec.report.rulebooks.comparison import diff_formats
+from rulec.report.tests import example_formats
 from rulec.report.verdicts import verdict_json
 from rulec.report.verdicts.state_times import StateTimes
 from rulec.report.verdicts.verdict_report import open_in_words
@@ -79,12 +79,12 @@ def _format(question: Question) -> Any:
 def _rules(question: Question) -> Any:
     """The rules in English."""
     book = rulec.load_rulebook(_written(question))
-    return as_builtins(rule_json.as_document(book, book.rules, None))
+    return as_builtins(rule_page.as_document(book, book.rules, None))
 
 
 def _test(question: Question) -> Any:
     run = rulec.test(_written(question))
-    return json.loads(example_json.as_json([run], [rulec.coverage(run)]))
+    return json.loads(example_formats.as_json([run], [rulec.coverage(run)]))
 
 
 def _judge(question: Question) -> Any:
@@ -136,7 +136,7 @@ def _compare(question: Question) -> Any:
     patterns = [question["rule"]] if question["rule"] else []
     books = _book(question, "first"), _book(question, "second")
     return json.loads(
-        diff_json.as_json(rulec.diff(*books, patterns=patterns, on_progress=question["tell"]))
+        diff_formats.as_json(rulec.diff(*books, patterns=patterns, on_progress=question["tell"]))
     )
 
 

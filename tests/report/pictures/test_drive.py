@@ -18,17 +18,17 @@ from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.recordings.recording import Light
 from rulec.report.pictures.drawing.canvas import Area, LabelText
-from rulec.report.pictures.drawing.clipping import clipped_lines, clipped_ring
 from rulec.report.pictures.drawing.picture_formats import as_bytes
 from rulec.report.pictures.drives import drive_page
+from rulec.report.pictures.drives.drive_page import scene_data
 from rulec.report.pictures.drives.drive_picture import (
     chosen_moment,
+    clipped_lines,
+    clipped_ring,
     drive_entries,
     drive_picture,
 )
-from rulec.report.pictures.drives.nearest_points import nearest_points
-from rulec.report.pictures.drives.scene_json import scene_data
-from rulec.report.pictures.drives.scene_of_drive import SIGHT_M, drive_scene
+from rulec.report.pictures.drives.scene_of_drive import SIGHT_M, drive_scene, nearest_points
 from rulec.vocabulary.partial_values import Interval
 from support.builders.recordings import recording, straight, vehicle
 from support.oracles.page_policy import check_policy

@@ -5,7 +5,7 @@ from collections import Counter
 import pytest
 
 from rulec import find_maneuvers
-from rulec.planning.product.accepted_edges import accepted_edges
+from rulec.planning.product.graph_product import accepted_edges
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Polyline
 from rulec.report.pictures.graph_picture import graph_picture
 from rulec.trace.trace_model import paths

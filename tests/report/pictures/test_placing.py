@@ -5,8 +5,7 @@ from itertools import combinations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.report.pictures.drawing.canvas import LabelText
-from rulec.report.pictures.drawing.label_placement import Placing
+from rulec.report.pictures.drawing.canvas import LabelText, Placing
 
 lengths = st.integers(0, 120)
 rooms = st.builds(

@@ -4,8 +4,8 @@ from dataclasses import replace
 from fractions import Fraction
 
 from rulec.api.named_monitor import Monitor
-from rulec.planning.product.graph_instances import HARD, SOFT, instances, violations
 from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.product.possible_instances import HARD, SOFT, instances, violations
 from rulec.planning.ranking.pruning import violating
 from rulec.planning.trace_history import past_of
 from rulec.trace import TraceGraph

@@ -10,7 +10,7 @@ import msgspec
 from rulec.analysis.audit.audit_messages import NOT_AN_AUDIT
 from rulec.analysis.audit.rulebook_audit import Audit
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.diagnostics.json_problems import json_words
+from rulec.diagnostics.phrases import json_words
 from rulec.files.read_files import MAX_LAW_BYTES, opened, read_whole
 
 

@@ -20,8 +20,7 @@ from rulec.analysis.lint.related_rules import RelatedRules
 from rulec.analysis.shared_compilation import AnalyzedRule, at_one_step, compile_shared
 from rulec.analysis.trace_display import trace_note
 from rulec.diagnostics import Diagnostic, Label, Span, named
-from rulec.diagnostics.diagnostic import at
-from rulec.diagnostics.source_text import SourceLocation
+from rulec.diagnostics.diagnostic import SourceLocation, at
 from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.rulebook.rules.antecedents import (

@@ -32,7 +32,7 @@ from rulec.automata.bundle.cut_machines import CutTables, StoredPrefixes, TimedC
 from rulec.automata.bundle.required_signature import check_signed
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.diagnostics.json_problems import json_words
+from rulec.diagnostics.phrases import json_words
 from rulec.files.file_sets import write_together
 from rulec.files.read_files import MAX_SAVED_BYTES, opened, read_whole
 from rulec.files.written_files import make_folder

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import field, fields
+from dataclasses import field, fields, replace
+from fnmatch import fnmatchcase
 from fractions import Fraction
 from functools import partial, wraps
 from glob import has_magic
@@ -22,6 +23,7 @@ from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import RenamedOption, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.options.standard_input import read_as_file
+from rulec.diagnostics import did_you_mean
 from rulec.report.findings.finding_formats import FORMATS
 from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
@@ -316,3 +318,44 @@ findings_options = combined(
     ]
 )
 """How findings are written, and which of them set the exit status to 1."""
+
+
+def refuse_unmatched(
+    patterns: Sequence[str], books: Sequence[lazy.Rulebook] | Sequence[lazy.CompiledRulebook]
+) -> None:
+    """Refuse a pattern that matches no rule: nothing to report would look like nothing found.
+
+    Raises click.BadParameter.
+    """
+    known = {rule.name for book in books for rule in book.rules}
+    for pattern in patterns:
+        if not any(fnmatchcase(name, pattern) for name in known):
+            near = did_you_mean(pattern, known)
+            whose = (
+                f"{books[0].name} has no" if len(books) == 1 else "none of these rulebooks has a"
+            )
+            raise click.BadParameter(
+                f"{whose} rule like `{pattern}`{near and f'; {near}'}", param_hint="--rule"
+            )
+
+
+def rules_on_topic(books: Sequence[lazy.Rulebook], topic: str) -> tuple[lazy.Rulebook, ...]:
+    """The rulebooks with only their rules on a topic. Raises click.BadParameter: there is none."""
+    try:
+        chosen = lazy.on_topic(books, topic)
+    except LookupError as problem:
+        raise click.BadParameter(str(problem.args[0]), param_hint="--topic") from None
+    if not any(book.rules for book in chosen):
+        names = ", ".join(book.name for book in books)
+        raise click.BadParameter(f"{names}: no rule is on `{topic}`", param_hint="--topic")
+    return chosen
+
+
+def with_rules_like(rules: lazy.CompiledRulebook, patterns: Sequence[str]) -> lazy.CompiledRulebook:
+    """A compiled rulebook with only the rules that match one of the patterns, if there are any."""
+    if not patterns:
+        return rules
+    kept = [
+        rule for rule in rules.rules if any(fnmatchcase(rule.name, pattern) for pattern in patterns)
+    ]
+    return replace(rules, rules=tuple(kept))

@@ -13,7 +13,7 @@ from typing import IO, Any, cast
 import click
 
 from rulec.cli import lazy_imports as lazy
-from rulec.cli.options.invocation import invocation_of
+from rulec.cli.options.verb_class import invocation_of
 from rulec.files.file_messages import no_input
 from rulec.files.read_files import STANDARD_INPUT_COPY, opened
 from rulec.files.written_files import TEMPORARY, temporary_files

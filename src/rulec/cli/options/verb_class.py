@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import dataclass
 
 import click
 
@@ -47,3 +48,17 @@ def _refuse_repeated(verb: Verb, context: click.Context, arguments: list[str]) -
             number = "twice" if times == 2 else f"{times} times"
             name = parameter.opts[-1]
             raise click.UsageError(f"{name} is given {number}, and takes one value", context)
+
+
+@dataclass(frozen=True, slots=True)
+class Invocation:
+    """The arguments, and ``is_program``: whether limits of the process are rulec's to set."""
+
+    arguments: tuple[str, ...] = ()
+    is_program: bool = False
+
+
+def invocation_of(context: click.Context | None) -> Invocation:
+    """The invocation that a context belongs to."""
+    found = None if context is None else context.find_root().obj
+    return found if isinstance(found, Invocation) else Invocation()

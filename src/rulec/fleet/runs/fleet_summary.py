@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.files.left_alone import in_words
+from rulec.fleet.runs.fleet_folder import FleetTally
 from rulec.fleet.runs.fleet_run import FleetRun
-from rulec.fleet.runs.fleet_tally import FleetTally
 from rulec.monitoring.verdict import VerdictOutcome
 from rulec.report.text.terminal_text import visible
-from rulec.report.verdicts import side_by_side, verdict_report
-from rulec.report.verdicts.batch_table import BatchTally
+from rulec.report.verdicts import verdict_report
+from rulec.report.verdicts.batch_table import BatchTally, as_columns
 
 _MOST_REASONS = 5
 
@@ -24,7 +24,7 @@ def as_text(run: FleetRun) -> str:
 
 def compared(runs: Sequence[tuple[CompiledRulebook, FleetRun]]) -> str:
     """A table of how many drives violate each rule, with a column for each rulebook."""
-    return side_by_side.as_text([(rules, _verdicts(run.tally)) for rules, run in runs])
+    return as_columns([(rules, _verdicts(run.tally)) for rules, run in runs])
 
 
 def _verdicts(tally: FleetTally) -> BatchTally:

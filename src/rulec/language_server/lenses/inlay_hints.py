@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from lsprotocol import types as lsp
 
-from rulec.language_server.names.document_names import DocumentNames
 from rulec.language_server.names.hover_texts import value_text
+from rulec.language_server.names.name_occurrences import DocumentNames
 from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.rulebook.names.referenced_names import atoms_in, formulas_of, parts_of
 from rulec.syntax import tree

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from rulec.analysis.audit.citations import cited_entries, listed_places
 from rulec.diagnostics import Span
-from rulec.language_server.names.document_names import DocumentNames
-from rulec.language_server.names.name_occurrences import NamedSymbol, Occurrence
+from rulec.language_server.names.name_occurrences import DocumentNames, NamedSymbol, Occurrence
 from rulec.logic.printing import formula_text
 from rulec.report.rulebooks.word_texts import (
     as_paragraphs,

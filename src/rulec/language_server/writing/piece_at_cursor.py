@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rulec.diagnostics import RulecError, Source
-from rulec.language_server.names.document_names import DocumentNames
+from rulec.language_server.names.name_occurrences import DocumentNames
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces
 from rulec.syntax.grammar import accepted_after
 from rulec.syntax.parse_nodes import Start

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from lsprotocol import types as lsp
 
 from rulec.diagnostics import RulecError
-from rulec.language_server.names.document_names import DocumentNames, item_at
+from rulec.language_server.names.name_occurrences import DocumentNames, item_at
 from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.language_server.writing.piece_at_cursor import PieceAtCursor, piece_at

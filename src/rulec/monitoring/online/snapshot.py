@@ -13,7 +13,7 @@ import msgspec
 from rulec.automata.bundle.bundle_file import read_to_data
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.diagnostics.json_problems import json_words
+from rulec.diagnostics.phrases import json_words
 from rulec.logic.codec import number_from_data
 from rulec.monitoring.bindings import types_of
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR

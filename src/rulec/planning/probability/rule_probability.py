@@ -13,11 +13,16 @@ from fractions import Fraction
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.partition.prediction_worlds import named_in, predicted_path, world_graph
 from rulec.planning.maneuvers import Maneuvers
-from rulec.planning.probability.event_probability import Event, Weights, none_of
-from rulec.planning.probability.violation_events import Lost, ViolationEvents
-from rulec.planning.product.graph_instances import HARD
+from rulec.planning.probability.violation_events import (
+    Event,
+    Lost,
+    ViolationEvents,
+    Weights,
+    none_of,
+)
 from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.product.possible_instances import HARD
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.rule_instances import bind_rules, in_rule_words, past_for
 from rulec.value_display import short_repr

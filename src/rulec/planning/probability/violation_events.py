@@ -1,8 +1,14 @@
-"""The events in which a path through a graph violates a rule."""
+"""The events in which a path through a graph violates a rule.
+
+Each obstacle follows one of its predictions, independently of the others; an event is that several
+obstacles follow certain predictions. Worlds (a prediction for every obstacle) are not enumerated.
+"""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from fractions import Fraction
 from functools import cache
 from itertools import product
 from math import prod
@@ -21,14 +27,63 @@ from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.partition.prediction_worlds import PredictedPath
 from rulec.planning.maneuvers import Maneuvers
-from rulec.planning.planning_messages import MOST_WORLDS
-from rulec.planning.probability.event_probability import Event
-from rulec.planning.product.graph_instances import HARD, SOFT
+from rulec.planning.product.possible_instances import HARD, SOFT
 from rulec.planning.rule_instances import in_rule_words, past_for
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.object_universe import counts_in
+
+Event = frozenset[tuple[str, int]]
+"""Obstacles with the predictions that have to come true; the empty event always happens."""
+
+Weights = Mapping[str, Mapping[int, Fraction]]
+"""For each obstacle its predictions and their probabilities, which add up to 1."""
+
+
+def none_of(events: Collection[Event], weights: Weights) -> Fraction:
+    """The exact probability that no event happens.
+
+    Events that share no obstacle are independent. For the others one obstacle after the other is
+    fixed, which takes time exponential only in how much the events overlap.
+    """
+
+    @cache
+    def none(events: frozenset[Event]) -> Fraction:
+        if frozenset() in events:
+            return Fraction(0)
+        return prod(map(none_entangled, _independent(events)), start=Fraction(1))
+
+    def none_entangled(events: frozenset[Event]) -> Fraction:
+        counted = Counter(obstacle for event in events for obstacle, _ in event)
+        obstacle = min(counted, key=lambda candidate: (-counted[candidate], candidate))
+        result = Fraction(0)
+        for number, weight in weights[obstacle].items():
+            left = frozenset(
+                event - {(obstacle, number)}
+                for event in events
+                if all(name != obstacle or what == number for name, what in event)
+            )
+            result += weight * none(left)
+        return result
+
+    return none(frozenset(events))
+
+
+def _independent(events: frozenset[Event]) -> Iterator[frozenset[Event]]:
+    left = set(events)
+    while left:
+        group = {left.pop()}
+        about = {obstacle for event in group for obstacle, _ in event}
+        while joining := {event for event in left if any(name in about for name, _ in event)}:
+            left -= joining
+            group |= joining
+            about |= {obstacle for event in joining for obstacle, _ in event}
+        yield frozenset(group)
+
+
+MOST_WORLDS = 10_000
+"""The most worlds that are examined one by one for a rule that counts objects."""
 
 Lost = dict[tuple[str, ...], set[Event]]
 """For the objects (of the scenario) that a rule is about, the events in which it is violated."""

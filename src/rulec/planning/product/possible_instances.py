@@ -7,14 +7,22 @@ machine of their own, by which paths can be counted.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from bisect import bisect_right
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from fractions import Fraction
+from functools import cached_property
+from itertools import accumulate, chain, pairwise
+from typing import TypeAlias, TypeVar
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
 from rulec.automata.outcome_machine import KEPT, VIOLATED, SetMonitor
+from rulec.automata.thresholds import exact_step
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
+from rulec.monitoring.implied_values import with_implied_in_graph
+from rulec.monitoring.state_validation import check_objects, check_states
+from rulec.monitoring.uncertainty.known_words import run
 from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
 from rulec.monitoring.uncertainty.suppositions import (
@@ -23,10 +31,10 @@ from rulec.monitoring.uncertainty.suppositions import (
 )
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
 from rulec.monitoring.uncertainty.untold_names import untold_names, untold_types, with_untold
-from rulec.monitoring.verdict import NO_PAST, CarriedState, RuleNotJudged
+from rulec.monitoring.verdict import NO_PAST, CarriedState, RuleNotJudged, Violation
 from rulec.planning.product.graph_instance import GraphInstance, Readings, SetMachine
-from rulec.planning.product.nodes_in_turn import NodesInTurn
-from rulec.trace import Trace, TraceGraph
+from rulec.rulebook.rulebook_model import Strength
+from rulec.trace import State, Trace, TraceGraph
 from rulec.vocabulary import Vocabulary
 
 MOST_SETS = 1 << 10
@@ -114,7 +122,7 @@ class PossibleNodes:
         graph, machine = self._graph, uncertain_machine(rule, None)
         read = self._letters.bits_of(rule)
         alike: dict[_Alike, list[Binding]] = {}
-        for binding in _bindings(rule, graph, self._vocabulary, read, past):
+        for binding in graph_bindings(rule, graph, self._vocabulary, read, past):
             about = (rule.name, tuple(binding.objects.values()))
             # What is settled is read, too, so that impossible nodes get noticed.
             words, is_exact = self._words(rule, machine, binding)
@@ -226,7 +234,7 @@ def readings(
     return Readings(SetMachine(successors, surely), SetMachine(successors, perhaps), is_exact)
 
 
-def _bindings(
+def graph_bindings(
     rule: CompiledRule,
     graph: TraceGraph,
     vocabulary: Vocabulary,
@@ -240,9 +248,98 @@ def _bindings(
     cast = Cast(graph.objects, vocabulary, len(graph.states), graph.present)
     if not cast.has_many(types_of(rule)):
         return cast.bindings(rule)
+    # Imported late (10 ms): only if there are many choices.
+    from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
+
     nodes = NodesInTurn(graph)
     in_nodes = Cast(graph.objects, vocabulary, len(nodes.states), nodes.present)
     bindings = doubtful_bindings(
         rule, in_nodes, read, uncertain_machine(rule, None).idle, past.begun(rule.name)
     )
     return (binding_of(own.objects, graph.present, len(graph.states)) for own in bindings)
+
+
+Item = TypeVar("Item")
+
+
+class NodesInTurn:
+    """The nodes of all layers in one sequence, as if they were the states of one trace."""
+
+    def __init__(self, graph: TraceGraph) -> None:
+        self._graph = graph
+        self._begins = [0, *accumulate(map(len, graph.states))]
+
+    @cached_property
+    def states(self) -> tuple[State, ...]:
+        """The states of all nodes."""
+        return tuple(chain.from_iterable(self._graph.states))
+
+    @cached_property
+    def present(self) -> dict[str, tuple[int, int]]:
+        """For each object that is not in all layers, the numbers of its first and last node."""
+        return {item: self.stretch(*layers) for item, layers in self._graph.present.items()}
+
+    def stretch(self, first: int, last: int) -> tuple[int, int]:
+        """The numbers of the first and the last node of layers ``first`` to ``last``, inclusive."""
+        return self._begins[first], self._begins[last + 1] - 1
+
+    def layer_of(self, number: int) -> int:
+        """The layer of a node."""
+        return bisect_right(self._begins, number) - 1
+
+    def by_layer(
+        self, values: Sequence[Item], first: int, last: int
+    ) -> tuple[tuple[Item, ...], ...]:
+        """The nodes' ``values``, grouped by layer."""
+        before = self._begins[first]
+        bounds = [begin - before for begin in self._begins[first : last + 2]]
+        return tuple([tuple(values[begin:end]) for begin, end in pairwise(bounds)])
+
+
+HARD: tuple[Strength, ...] = ("hard",)
+SOFT: tuple[Strength, ...] = ("soft",)
+
+
+def instances(
+    graph: TraceGraph,
+    rulebook: CompiledRulebook,
+    step_s: Fraction | None = None,
+    strengths: Collection[Strength] = HARD,
+    past: CarriedState = NO_PAST,
+) -> list[GraphInstance]:
+    """Bind rules of these strengths to a graph's objects.
+
+    ``step_s`` is the graph's exact step if it is not a decimal, such as a third of a second.
+    Bindings of a rule with the same letters in every node are one instance. Bindings settled in the
+    ``past`` are left out, the others continue from their state; rules that cannot be judged,
+    because the graph does not provide what they need, are left out too. Raises RulecError: R0502 to
+    R0505 if the graph does not supply what the rules read, R0507 if one of these rules was compiled
+    for another step, R0508 if a state contradicts a fact.
+    """
+    vocabulary = rulebook.vocabulary
+    rules = [rule for rule in rulebook.rules if rule.strength in strengths]
+    for rule in rules:
+        check_step(rule, exact_step(graph.step_s) if step_s is None else step_s, "the graph")
+    check_objects(graph.objects, vocabulary)
+    places = [f"a cell of layer {layer}".format for layer in range(len(graph.states))]
+    for states, where in zip(graph.states, places, strict=True):
+        check_states(states, graph.objects, vocabulary, where)
+    possible = PossibleNodes(with_implied_in_graph(graph, vocabulary), rulebook, places)
+    possible.check_counting_axioms()
+    return [own for rule in rules for own in possible.instances(rule, past)]
+
+
+def violations(rules: Sequence[GraphInstance], nodes: Sequence[int]) -> tuple[Violation, ...]:
+    """Violations on a path whose letters are known, with the layer of each bad prefix."""
+    result = []
+    for rule in rules:
+        path = nodes[rule.first : rule.last + 1]
+        word = [row[node] for row, node in zip(rule.letters, path, strict=True)]
+        accepted, lost = run(rule.rule.machine, word, rule.start)
+        if not accepted:
+            layer = None if lost is None else rule.first + lost
+            result += [
+                Violation(rule.rule.name, rule.rule.strength, binding.objects, layer)
+                for binding in rule.bindings
+            ]
+    return tuple(result)

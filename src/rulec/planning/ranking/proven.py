@@ -2,25 +2,31 @@
 
 Linear programs bound a path's cost from its beginning on. Paths are tried in the order of their
 bounds until none can be cheaper than those found, or a limit on tries is reached.
+
+A linear program bounds the driving cost of a path's beginning; the cost of its changes of cell, and
+the least cost of those to come, are added. The beginning with the lowest bound is extended first.
+Where that takes too long, a beam search reaches the end, but not always by the cheapest path.
 """
 
 from __future__ import annotations
 
 from bisect import insort
-from dataclasses import replace
-from itertools import islice, pairwise
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from heapq import heapify, heappop, heappush
+from itertools import count, islice, pairwise
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeAlias
 
 from rulec.partition import NavigationGraph
 from rulec.partition.navigation_graph import COMFORTABLE
-from rulec.planning.product.graph_product import Memory, Product
-from rulec.planning.ranking.cheapest import Maneuver, cheapest
-from rulec.planning.ranking.guided_ways import ALIKE, beam_ways, change_cost, guided_ways
+from rulec.planning.product.graph_product import Memory, Product, ProductNode
+from rulec.planning.ranking.cheapest import Maneuver, cheapest, maneuver
 
 if TYPE_CHECKING:
-    from rulec.partition.motion.way_bounds import WayBounds
+    from rulec.partition.motion.way_bounds import WayBound, WayBounds
     from rulec.partition.motion.witness_trajectory import WitnessSearch, WitnessTrajectory
+
 
 MOST_TRIED = 40
 """The most paths tried for each maneuver wanted."""
@@ -133,3 +139,159 @@ def least_promised(
     ways = guided_ways(product, graph, bounds, MOST_BOUNDS, driving_only=True)
     first = next(ways, None)
     return None if first is None else max(first.promises - ALIKE, 0.0)
+
+
+ALIKE = 0.01
+"""Of beginnings whose bounds differ by less than this, the longest is extended first."""
+
+_Costs: TypeAlias = list[dict[ProductNode[Memory], float]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GuidedWay:
+    """A path without its cost, and the lower bound that it ``promises``."""
+
+    maneuver: Maneuver
+    promises: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Part(Generic[Memory]):
+    """A path's beginning up to a ``node``: the cost of its changes of cell, and its driving cost.
+
+    The bound is that of the beginning without its last cell, unless ``is_known``.
+    """
+
+    path: tuple[int, ...]
+    node: ProductNode[Memory]
+    changes: float
+    bound: WayBound | None
+    is_known: bool
+
+    def promises(self, to_come: _Costs[Memory]) -> float:
+        driving = 0.0 if self.bound is None else self.bound.cost
+        return self.changes + to_come[len(self.path) - 1][self.node] + driving
+
+    def bounded(self, bounds: WayBounds) -> _Part[Memory] | None:
+        """The part with its own bound; None if it cannot be driven."""
+        bound = bounds.of(self.path, self.bound.cuts if self.bound else {})
+        return None if bound is None else replace(self, bound=bound, is_known=True)
+
+
+def guided_ways(
+    product: Product[Memory],
+    graph: NavigationGraph,
+    bounds: WayBounds,
+    most: int,
+    *,
+    driving_only: bool = False,
+) -> Iterator[GuidedWay]:
+    """Paths by ascending bound, up to ``ALIKE``; at most ``most`` linear programs are solved.
+
+    Paths whose bound shows that they cannot be driven are left out. With ``driving_only`` changes
+    of cell cost nothing.
+    """
+    to_come = _changes_to_come(product, graph, free=driving_only)
+    queue: list[tuple[int, int, float, int, _Part[Memory]]] = []
+    numbers = count()
+
+    def put(part: _Part[Memory]) -> None:
+        promises = part.promises(to_come)
+        layers = -len(part.path)
+        heappush(queue, (int(promises / ALIKE), layers, promises, next(numbers), part))
+
+    for start in product.counts[0]:
+        if start in to_come[0]:
+            put(_first(start))
+    while queue:
+        *_, part = heappop(queue)
+        layer = len(part.path) - 1
+        if not part.is_known:
+            if not most:
+                return
+            most -= 1
+            known = part.bounded(bounds)
+            if known is not None:
+                put(known)
+        elif layer == len(graph.layers) - 1:
+            found = maneuver(product.graph, part.path, 0)
+            yield GuidedWay(found, part.promises(to_come))
+        else:
+            for longer in _onward(part, product, graph, to_come, free=driving_only):
+                put(longer)
+
+
+def beam_ways(
+    product: Product[Memory], graph: NavigationGraph, bounds: WayBounds, width: int
+) -> Iterator[GuidedWay]:
+    """Paths found by extending, in every layer, only the ``width`` beginnings of lowest bound.
+
+    Source: Lowerre, "The HARPY speech recognition system" (1976).
+    """
+    to_come = _changes_to_come(product, graph, free=False)
+    numbers = count()
+    beam = [_first(start) for start in product.counts[0] if start in to_come[0]]
+    for _ in product.steps:
+        longer = [
+            longer_part for part in beam for longer_part in _onward(part, product, graph, to_come)
+        ]
+        queue = [(part.promises(to_come), next(numbers), part) for part in longer]
+        heapify(queue)
+        beam = []
+        while queue and len(beam) < width:
+            *_, part = heappop(queue)
+            if part.is_known:
+                beam.append(part)
+            elif (known := part.bounded(bounds)) is not None:
+                heappush(queue, (known.promises(to_come), next(numbers), known))
+    for part in beam:
+        yield GuidedWay(maneuver(product.graph, part.path, 0), part.promises(to_come))
+
+
+def _first(start: ProductNode[Memory]) -> _Part[Memory]:
+    return _Part((start[0],), start, 0.0, None, is_known=True)
+
+
+def _onward(
+    part: _Part[Memory],
+    product: Product[Memory],
+    graph: NavigationGraph,
+    to_come: _Costs[Memory],
+    *,
+    free: bool = False,
+) -> Iterator[_Part[Memory]]:
+    """The parts that are one cell longer; if ``free``, changes of cell cost nothing."""
+    layer = len(part.path) - 1
+    for step, _ in product.steps[layer][part.node]:
+        if step in to_come[layer + 1]:
+            cost = 0.0 if free else change_cost(graph, layer, part.node[0], step[0])
+            path = (*part.path, step[0])
+            yield _Part(path, step, part.changes + cost, part.bound, is_known=False)
+
+
+def change_cost(graph: NavigationGraph, p: int, node: int, target: int) -> float:
+    """The cost, by its margin, of going from a cell of layer ``p`` to one of the next."""
+    margin = graph.margins[p][node][graph.successors[p][node].index(target)]
+    if margin is None or graph.costs_nothing(p, node, target):
+        return 0.0
+    return 1 / (margin * graph.step_s)
+
+
+def _changes_to_come(
+    product: Product[Memory], graph: NavigationGraph, *, free: bool
+) -> _Costs[Memory]:
+    """The least cost of changes of cell from each product node to a goal, by layer."""
+    costs: _Costs[Memory] = [dict.fromkeys(product.ends, 0.0)]
+    for p in reversed(range(len(product.steps))):
+        later = costs[-1]
+        here: dict[ProductNode[Memory], float] = {}
+        known: dict[tuple[int, int], float] = {}
+        for node, onward in product.steps[p].items():
+            for step, _ in onward:
+                if step in later:
+                    edge = node[0], step[0]
+                    if edge not in known:
+                        known[edge] = 0.0 if free else change_cost(graph, p, *edge)
+                    here[node] = min(here.get(node, float("inf")), known[edge] + later[step])
+        costs.append(here)
+    return costs[::-1]

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TextIO
 
 from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics.diagnostic import SourceLocation, address
 from rulec.diagnostics.fault_messages import FAULT
-from rulec.diagnostics.source_text import SourceLocation, address
 from rulec.files.work_trees import leads_out
 from rulec.report.text.console import page_width, print_aside
 from rulec.report.text.terminal_text import broken, cell_width, styled, visible, wants_color

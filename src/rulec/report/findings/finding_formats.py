@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Protocol
 
 from rulec.diagnostics import Diagnostic
-from rulec.diagnostics.source_text import address
+from rulec.diagnostics.diagnostic import address
 from rulec.files.read_files import from_here
 from rulec.report.text.terminal_text import visible
 

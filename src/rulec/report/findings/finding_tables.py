@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import IO, Any
 
 from rulec.report.findings.verdict_finding import COLUMNS, EMPTY_CELLS, RecordingFindings
-from rulec.report.text.csv_text import csv_text
+from rulec.report.text.outgoing import csv_text
 from rulec.trace.formats.arrow.parquet import arrow, write_parquet
 
 

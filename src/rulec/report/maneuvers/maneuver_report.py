@@ -16,7 +16,15 @@ from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.report.maneuvers import maneuver_blocks
 from rulec.report.text.console import PAGE_WIDTH
-from rulec.report.text.terminal_text import mirrored, shown_count, styled, visible
+from rulec.report.text.terminal_text import (
+    cut,
+    mirrored,
+    shown_count,
+    stacked_tables,
+    styled,
+    table_lines,
+    visible,
+)
 from rulec.scenario import Account, Scenario
 
 if TYPE_CHECKING:
@@ -312,3 +320,46 @@ def _class_counts(maneuvers: Maneuvers, classes: HomotopyClasses) -> Iterator[st
 def _chances(answers: ManeuverAnswers, maneuver: Maneuver) -> list[str]:
     chances = answers.chances.get(maneuver.nodes)
     return [] if chances is None else maneuver_blocks.chance_lines(chances)
+
+
+@dataclass(frozen=True, slots=True)
+class ManeuverCounts:
+    """A scenario's counts by one rulebook; ``is_judged``: a hard rule could be judged."""
+
+    scenario: str
+    rulebook: str
+    maneuvers: int
+    satisfying: int
+    open: int
+    violating: int
+    is_judged: bool
+
+    @classmethod
+    def of(cls, scenario: str, maneuvers: Maneuvers) -> ManeuverCounts:
+        """The counts of maneuvers; ``scenario`` is its name on the command line."""
+        return cls(
+            scenario=scenario,
+            rulebook=maneuvers.rules.name,
+            maneuvers=maneuvers.traces,
+            satisfying=maneuvers.satisfying,
+            open=maneuvers.open,
+            violating=maneuvers.violating,
+            is_judged=maneuvers.judges,
+        )
+
+
+def counts_as_text(counts: Sequence[ManeuverCounts], width: int = PAGE_WIDTH) -> str:
+    """A table with a row for each scenario and rulebook."""
+    rows = [("scenario", "by", "maneuvers", "satisfying", "open", "violating")]
+    for count in counts:
+        numbers = (count.satisfying, count.open, count.violating)
+        cells = map(shown_count, numbers) if count.is_judged else ["not judged"] * len(numbers)
+        rows.append(
+            (visible(count.scenario), visible(count.rulebook), shown_count(count.maneuvers), *cells)
+        )
+    too_wide = max(map(len, table_lines(rows, right=range(2, 6)))) - width
+    longest = max(len(row[0]) for row in rows)
+    rows = [(cut(row[0], longest - max(too_wide, 0)), *row[1:]) for row in rows]
+    if too_wide < longest:
+        return "\n".join(table_lines(rows, right=range(2, 6), ruled=[0]))
+    return "\n".join(stacked_tables(rows, width, ruled=[0]))

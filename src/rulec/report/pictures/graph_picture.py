@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rulec.partition import NavigationGraph
-from rulec.planning.product.accepted_edges import AcceptedEdges
+from rulec.planning.product.graph_product import AcceptedEdges
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.report.pictures import picture_captions as captions
 from rulec.report.pictures.drawing import canvas

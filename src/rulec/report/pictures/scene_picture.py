@@ -10,8 +10,15 @@ from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.report.pictures import picture_captions as captions
 from rulec.report.pictures.drawing import canvas
-from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
-from rulec.report.pictures.drawing.label_placement import Placing
+from rulec.report.pictures.drawing.canvas import (
+    Area,
+    LabelText,
+    Mark,
+    Picture,
+    Placing,
+    Point,
+    Polyline,
+)
 from rulec.scenario import Box, Road
 from rulec.scenario.motion import span, swept
 

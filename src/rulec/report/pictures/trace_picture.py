@@ -8,8 +8,7 @@ from itertools import groupby
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.report.pictures.drawing import canvas
-from rulec.report.pictures.drawing.canvas import LabelText, Mark, Picture, Polyline
-from rulec.report.pictures.drawing.label_placement import Placing
+from rulec.report.pictures.drawing.canvas import LabelText, Mark, Picture, Placing, Polyline
 from rulec.report.pictures.picture_captions import ticks
 from rulec.report.pictures.trace_ribbon import (
     Ribbon,

@@ -1,14 +1,17 @@
-"""Rates as text, Markdown and CSV."""
+"""Rates as text, Markdown, CSV and JSON."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
+from types import GenericAlias
+from typing import get_type_hints
 
 from rulec.rates.exact_intervals import Interval
 from rulec.rates.rule_rates import Rate, RuleRates, ViolationRates
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled, made_class
 from rulec.report.text import markdown
-from rulec.report.text.csv_text import csv_text
+from rulec.report.text.outgoing import csv_text
 from rulec.report.text.terminal_text import broken, counted, cut, stacked_tables, visible
 
 _HEAD = ("rule", "opportunities", "violated", "per hour", "per 1000 km", "per opportunity")
@@ -166,3 +169,36 @@ def number(value: float) -> str:
     if value >= 1000:
         return f"{value:,.0f}"
     return f"{value:.3g}" if value >= 0.001 or value == 0 else f"{value:.1e}"
+
+
+class JudgedByData(JsonPart, frozen=True, kw_only=True):
+    """What drives were judged by."""
+
+    rulebook: str
+    rulebook_hash: str
+    rulec: str
+    thresholds: str
+    assumptions: str
+
+
+RuleRatesData = made_class(
+    "RuleRatesData",
+    {**get_type_hints(RuleRates), "group": dict[str, str]},
+    "The rates of a rule in a group; see docs/rates.md.",
+)
+_PARTS = {"judged_by": list[JudgedByData], "rules": GenericAlias(list, RuleRatesData)}
+RatesDocument = made_class(
+    "RatesDocument",
+    {**get_type_hints(ViolationRates), **_PARTS},
+    "The output of ``rulec rates --json``.",
+    JsonDocument,
+)
+
+
+def as_json(rates: ViolationRates) -> str:
+    """Write rates over several lines."""
+    rules = [
+        filled(RuleRatesData, rule, group=dict(zip(rates.by, rule.group, strict=True)))
+        for rule in rates.rules
+    ]
+    return as_indented(filled(RatesDocument, rates, rules=rules))

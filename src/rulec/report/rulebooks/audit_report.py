@@ -11,14 +11,13 @@ from typing import get_args
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.audit.provision_coverage import ListedProvision, ProvisionState
 from rulec.analysis.audit.rulebook_audit import Audit, AuditChanges, AuditFinding
-from rulec.analysis.audit.source_audit import SourceAudit
+from rulec.analysis.audit.source_audit import Basis, RuleBasis, SourceAudit
 from rulec.report.json_document import JsonDocument, as_indented
-from rulec.report.rulebooks import source_report
 from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguage
 from rulec.report.rulebooks.rule_list import law_of
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.markdown import code, escaped, table
-from rulec.report.text.terminal_text import broken, cut, fact_lines, styled, visible
+from rulec.report.text.terminal_text import broken, counted, cut, fact_lines, styled, visible
 
 ASKED_FOR = frozenset({"failing", "not-found", "unread", "law-changed"})
 """Kinds of findings that only an option looks for."""
@@ -61,10 +60,10 @@ def render(
             return as_indented(AuditDocument(audits=changed, sources=sources))
         case "markdown":
             parts = [_as_markdown(*pair) for pair in pairs]
-            return "\n\n".join([*parts, *map(source_report.as_markdown, sources)])
+            return "\n\n".join([*parts, *map(_source_as_markdown, sources)])
         case _:
             parts = [_as_text(*pair, width, in_full=in_full) for pair in pairs]
-            parts += [source_report.as_text(source, width) for source in sources]
+            parts += [_source_as_text(source, width) for source in sources]
             return "\n\n\n".join(parts)
 
 
@@ -232,3 +231,56 @@ def _changes_as_markdown(compared: AuditChanges) -> str:
         for finding in findings
     ]
     return table(["change", "kind", "what it is about"], rows) if rows else "None."
+
+
+_TITLES: Mapping[Basis, str] = {
+    "evidence": "judged on evidence",
+    "presumption": "judged, with presumptions",
+    "nothing": "cannot be judged",
+}
+
+
+def _source_counts(audit: SourceAudit) -> str:
+    """The numbers of rules in one sentence."""
+    n = {basis: audit.count(basis) for basis in _TITLES}
+    return (
+        f"{counted(len(audit.rules), 'rule')}: {n['evidence']:,} judged on evidence, "
+        f"{n['presumption']:,} with presumptions, {n['nothing']:,} cannot be judged"
+    )
+
+
+def _source_as_text(audit: SourceAudit, width: int) -> str:
+    """The totals, then the rules by what they rest on, with the names that matter."""
+    first, *rest = broken(
+        visible(f"source {audit.source}: {_source_counts(audit)}"), width, later="  "
+    )
+    blocks = ["\n".join([first.replace("source", styled("source", "bold"), 1), *rest])]
+    for basis, title in _TITLES.items():
+        facts = [(rule.rule, _note(rule)) for rule in audit.rules if rule.basis == basis]
+        if facts:
+            blocks.append("\n".join([styled(title, "bold"), *fact_lines(facts, width)]))
+    return "\n\n".join(blocks)
+
+
+def _source_as_markdown(audit: SourceAudit) -> str:
+    """A table of the rules."""
+    rows = [
+        [code(rule.rule), _TITLES[rule.basis], _note(rule).replace("_", "\\_")]
+        for rule in audit.rules
+    ]
+    head = f"## From {code(audit.source)}\n\n{_source_counts(audit).capitalize()}."
+    return f"{head}\n\n{table(['rule', 'verdicts', 'why'], rows)}"
+
+
+def _note(rule: RuleBasis) -> str:
+    return "; ".join(_notes(rule))
+
+
+def _notes(rule: RuleBasis) -> Iterator[str]:
+    if rule.lacking:
+        yield f"for want of {', '.join(rule.lacking)}"
+        return
+    if rule.presumed:
+        yield f"presumes {', '.join(rule.presumed)}"
+    if rule.untold:
+        yield f"open where it depends on {', '.join(rule.untold)}"

@@ -12,7 +12,7 @@ from rich.tree import Tree
 
 from rulec.analysis.lineage import rule_lineage
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
-from rulec.report.rulebooks.rule_provenance import provenance
+from rulec.report.rulebooks.document_language import provenance
 from rulec.report.text.terminal_text import broken, column_lines, cut, visible
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_in_force

@@ -1,10 +1,12 @@
-"""The text page about a rule: its sentence, formula, automaton and traces."""
+"""The page about a rule as text and as JSON: its sentence, formula, automaton and traces."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+
+from msgspec import UNSET, UnsetType, structs
 
 from rulec.analysis.believable_states import declarations_read
 from rulec.analysis.rule_traces import rule_traces
@@ -14,15 +16,17 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.diagnostics.diagnostic import at
 from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.logic.free_names import names_in
+from rulec.logic.printing import formula_text
 from rulec.logic.sentences.sentence import Phrase
-from rulec.logic.sentences.sentence_layout import lines
+from rulec.logic.sentences.sentence_layout import in_one_line, lines
 from rulec.logic.sentences.wording import amount, number_text, spoken
-from rulec.report.automata import automaton_text
-from rulec.report.automata.automaton_model import Automaton, automaton_of
+from rulec.report.automata import automaton_model
+from rulec.report.automata.automaton_model import Automaton, Fate, Transition, automaton_of
+from rulec.report.json_document import JsonDocument, JsonPart, filled
 from rulec.report.rulebooks.spoken_rules import sentences_of
 from rulec.report.text.formula_lines import formula_lines, plain_clauses, plain_text
 from rulec.report.text.terminal_text import broken, fact_lines, styled, visible
-from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, Variable
+from rulec.rulebook.rulebook_model import Axiom, Certainty, Rule, Rulebook, Strength, Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 
@@ -161,7 +165,7 @@ def as_text(page: RulePage, rulebook: Rulebook, width: int) -> str:
     """The whole page."""
     formula = _formula(page.rule, width - len(INDENT))
     automaton = (
-        automaton_text.as_text(page.automaton, width - len(INDENT))
+        automaton_model.as_text(page.automaton, width - len(INDENT))
         if len(page.automaton.transitions) <= MOST_LISTED
         else f"{len(page.automaton.fates):,} states and {len(page.automaton.transitions):,} "
         "transitions; --automaton text lists them"
@@ -198,3 +202,86 @@ def _examples(page: RulePage, width: int) -> Iterator[str]:
         yield from broken(example, width, INDENT, 2 * INDENT)
         for remark in trace.remarks:
             yield from broken(f"# where {remark}", width, 2 * INDENT, f"{2 * INDENT}# ")
+
+
+class StateData(JsonPart, frozen=True, kw_only=True):
+    """A state of the automaton, with the verdict if it is final there."""
+
+    state: int
+    fate: Fate
+
+
+class AutomatonData(JsonPart, frozen=True, kw_only=True):
+    """The rule's automaton; traces start in state 0."""
+
+    states: Sequence[StateData]
+    transitions: Sequence[Transition]
+
+
+class RuleData(JsonPart, frozen=True, kw_only=True):
+    """A rule, in English and as a formula.
+
+    If it is the only one, it has its automaton, for steps of ``step_s`` unless that is null, and a
+    shortest trace that it rejects and a similar one that it accepts, null if there is none.
+    ``inherited_from`` names the rulebook that it comes from, if this one has not confirmed it.
+    """
+
+    name: str
+    strength: Strength
+    variables: Sequence[Variable]
+    cite: str
+    says: str
+    source: str
+    certainty: Certainty
+    level: str
+    weight: float
+    in_force_from: str
+    in_force_until: str
+    book: str
+    inherited_from: str
+    topics: Sequence[str]
+    sentence: str
+    restrictions: Sequence[str]
+    definitions: Sequence[str]
+    formula: str
+    automaton: AutomatonData | UnsetType = UNSET
+    step_s: float | UnsetType | None = UNSET
+    accepts: ShortestTrace | UnsetType | None = UNSET
+    rejects: ShortestTrace | UnsetType | None = UNSET
+
+
+class RulesDocument(JsonDocument, frozen=True, kw_only=True):
+    """Rules of a rulebook."""
+
+    rulebook: str
+    rules: Sequence[RuleData]
+
+
+def as_document(rulebook: Rulebook, rules: Sequence[Rule], page: RulePage | None) -> RulesDocument:
+    """The rules, with automaton and traces if there is only one."""
+    data = [_rule(rule, rulebook, page) for rule in rules]
+    return RulesDocument(rulebook=rulebook.name, rules=data)
+
+
+def _rule(rule: Rule, rulebook: Rulebook, page: RulePage | None) -> RuleData:
+    said = sentences_of(rule, rulebook)
+    data = filled(
+        RuleData,
+        rule,
+        weight=float(rule.weight),
+        step_s=UNSET,
+        sentence=in_one_line(said.requirement),
+        restrictions=[*map(in_one_line, said.restrictions)],
+        definitions=[*map(in_one_line, said.definitions)],
+        formula=formula_text(rule.formula),
+    )
+    if page is None:
+        return data
+    states = [StateData(state=state, fate=fate) for state, fate in enumerate(page.automaton.fates)]
+    return structs.replace(
+        data,
+        automaton=AutomatonData(states=states, transitions=page.automaton.transitions),
+        step_s=None if page.step_s is None else float(page.step_s),
+        accepts=page.accepted,
+        rejects=page.rejected,
+    )

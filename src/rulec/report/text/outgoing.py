@@ -6,9 +6,14 @@ name makes it `visible`, including line ends; what was forgotten there is escape
 
 from __future__ import annotations
 
+import csv
+import io
 import re
+from collections.abc import Iterable
 from io import RawIOBase
 from typing import IO, Any, Final
+
+from rulec.report.text.terminal_text import visible
 
 _CONTROLS: Final = "\x00-\x08\x0b-\x1f\x7f-\x9f"
 REORDERING: Final = "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
@@ -103,3 +108,18 @@ def _as_reference(match: re.Match[str]) -> str:
 def _as_escape(match: re.Match[str]) -> str:
     code = ord(match[0])
     return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"
+
+
+def csv_text(rows: Iterable[Iterable[object]], line_end: str = "\r\n") -> str:
+    """Lines of texts and numbers; items of a tuple are separated by semicolons, None is empty."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator=line_end).writerows(map(_cell, row) for row in rows)
+    return text.getvalue()
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, tuple):
+        value = "; ".join(value)
+    return spreadsheet_text(visible(value)) if isinstance(value, str) else repr(value)

@@ -1,4 +1,9 @@
-"""Verdicts on traces as text."""
+"""Verdicts on traces as text.
+
+The outcomes of an open verdict that differ only in one name, and cover all of its values, are
+merged into one without that name (prime implicants as in Quine and McCluskey, for more than two
+values). From the results enough are taken to cover all cases, those that cover most first.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +13,16 @@ from typing import get_args
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, TooLargeRule
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.rulebook_edition import edition_of
-from rulec.monitoring.verdict import OpenVerdict, Verdict, VerdictOutcome, Violation
+from rulec.monitoring.verdict import (
+    ConditionalOutcome,
+    OpenVerdict,
+    OutcomeName,
+    Verdict,
+    VerdictOutcome,
+    Violation,
+)
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.terminal_text import broken, counted, styled, visible
-from rulec.report.verdicts.outcome_cases import fewest_cases
 from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
 from rulec.rulebook.rulebook_model import cited_law
 
@@ -214,3 +225,52 @@ def summary(outcomes: Mapping[VerdictOutcome, int], not_judged: int, noun: str =
     ]
     parts += [f"{not_judged:,} not judged"] if not_judged else []
     return f"{counted(total, noun)}: {', '.join(parts)}"
+
+
+Case = frozenset[tuple[str, bool | str]]
+
+
+def fewest_cases(outcomes: Sequence[ConditionalOutcome]) -> list[ConditionalOutcome]:
+    """Few cases that cover the given ones with their outcomes; violations come first."""
+    by_outcome: dict[OutcomeName, list[Case]] = {}
+    for outcome in outcomes:
+        by_outcome.setdefault(outcome.outcome, []).append(frozenset(outcome.when.items()))
+    order = sorted(by_outcome, key=lambda name: name != "violated")
+    names = {name: place for place, name in enumerate(outcomes[0].when)} if outcomes else {}
+    values = {name: {outcome_.when[name] for outcome_ in outcomes} for name in names}
+    return [
+        ConditionalOutcome(dict(sorted(case, key=lambda pair: names[pair[0]])), name)
+        for name in order
+        for case in _cover(by_outcome[name], values)
+    ]
+
+
+def _cover(cases: Sequence[Case], values: Mapping[str, Set[bool | str]]) -> list[Case]:
+    primes, left, chosen = _primes(set(cases), values), set(cases), []
+    while left:
+        best = max(primes, key=lambda prime: (len(_within(prime, left)), -len(prime)))
+        chosen.append(best)
+        left -= _within(best, left)
+    return chosen
+
+
+def _within(prime: Case, cases: Set[Case]) -> set[Case]:
+    return {case for case in cases if prime <= case}
+
+
+def _primes(cases: Set[Case], values: Mapping[str, Set[bool | str]]) -> list[Case]:
+    """The merged cases with the fewest conditions, in a reproducible order."""
+    primes: set[Case] = set()
+    while cases:
+        merged: set[Case] = set()
+        used: set[Case] = set()
+        for case in cases:
+            for name, value in case:
+                without = case - {(name, value)}
+                alike = {without | {(name, other)} for other in values[name]}
+                if alike <= cases:
+                    merged.add(without)
+                    used |= alike
+        primes |= cases - used
+        cases = merged
+    return sorted(primes, key=lambda case: sorted((name, str(value)) for name, value in case))

@@ -12,8 +12,7 @@ from typing import Literal
 
 from rulec.diagnostics import Label, RulecError, Span, did_you_mean, named, nearest_name
 from rulec.diagnostics.ways_out import offering
-from rulec.files.own_kinds import what_reads
-from rulec.files.read_files import MAX_SOURCE_BYTES, opened
+from rulec.files.read_files import MAX_SOURCE_BYTES, opened, what_reads
 from rulec.files.source_detection import LEAD_BYTES, beginning_of, first_word_at
 from rulec.files.work_trees import refuse_no_source
 from rulec.resources import rulebooks_folder

@@ -8,7 +8,7 @@ from pathlib import PurePath
 
 from rulec.diagnostics import Diagnostic, Fix, Label, Offer, Source, Span
 from rulec.diagnostics.code import Code
-from rulec.diagnostics.source_text import SourceLocation
+from rulec.diagnostics.diagnostic import SourceLocation
 from rulec.diagnostics.ways_out import Help, WayOut, left_out, line_above, offering, put_before
 from rulec.files.source_detection import first_word_at
 from rulec.syntax.keywords import CHANGE_WORDS, CLAUSE_WORDS, ITEM_WORDS, RULE_WORDS

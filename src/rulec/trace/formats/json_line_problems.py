@@ -11,7 +11,7 @@ from typing import Generic, TypeVar, get_args, get_type_hints
 import msgspec
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
-from rulec.diagnostics.json_problems import json_words
+from rulec.diagnostics.phrases import json_words
 from rulec.trace.formats.stream_lines import not_utf8, placed
 from rulec.trace.trace_messages import NOT_A_TRACE
 

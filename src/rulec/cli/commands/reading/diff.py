@@ -17,7 +17,7 @@ from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.rule_choice import refuse_unmatched, rules_on_topic
+from rulec.cli.options.shared_options import refuse_unmatched, rules_on_topic
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import (
     answer_lines,

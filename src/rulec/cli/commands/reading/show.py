@@ -17,7 +17,7 @@ from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.rule_choice import rules_on_topic
+from rulec.cli.options.shared_options import rules_on_topic
 from rulec.cli.options.shell_completion import complete_rules
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import books_and_rule, errors_told, put_answer, rulebooks_named, width_of
@@ -135,7 +135,7 @@ def _shown(reference: str, request: ShowRequest, *, several: bool) -> tuple[str,
     page = None if chosen is None else _page(book, compiled, chosen)
     rules = book.rules if chosen is None else (chosen,)
     if request.to.form == "json":
-        document = lazy.rule_json.as_document(book, rules, page)
+        document = lazy.rule_page.as_document(book, rules, page)
         return lazy.json_document.as_line(document) if several else lazy.json_document.as_indented(
             document
         ), paths
@@ -248,9 +248,9 @@ def _names(book: lazy.Rulebook) -> str:
 
 def _automaton(automaton: lazy.Automaton, output_format: str, name: str, width: int) -> str:
     if output_format == "text":
-        return lazy.automaton_text.as_text(automaton, width)
+        return lazy.automaton_model.as_text(automaton, width)
     if output_format == "dot":
-        return lazy.automaton_text.as_dot(automaton, name)
+        return lazy.automaton_model.as_dot(automaton, name)
     if lazy.is_too_large(automaton):
         raise click.ClickException(
             f"an automaton of {len(automaton.fates):,} states and {len(automaton.transitions):,} "

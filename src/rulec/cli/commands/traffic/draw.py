@@ -24,13 +24,13 @@ from rulec.cli.options.recording_options import (
     drives_options,
     recording_options,
 )
-from rulec.cli.options.rule_choice import refuse_unmatched, with_rules_like
 from rulec.cli.options.scenario_options import (
     ReadingOptions,
     SceneOptions,
     graph_options,
     reading_options,
 )
+from rulec.cli.options.shared_options import refuse_unmatched, with_rules_like
 from rulec.cli.options.standard_input import file_named
 from rulec.cli.options.verb_class import VerbGroup
 from rulec.cli.output import output_stream, print_written, read_machines

@@ -175,7 +175,7 @@ def command(
             # Raised so that no file is written.
             raise click.exceptions.Exit(ExitStatus.NOT_ANSWERED)
         if several and to.form == "text":
-            write(lazy.maneuver_table.as_text(counts, page_width()))
+            write(lazy.maneuver_report.counts_as_text(counts, page_width()))
     print_written(to.path, to)
     answered = len(counts) == len(inputs.paths) * len(machines) and not inputs.problems
     return ExitStatus.after(

@@ -88,7 +88,7 @@ def command(
         print_written(to.path, to)
         return
     renderers = {
-        "json": lazy.rates_json.as_json,
+        "json": lazy.rates_table.as_json,
         "csv": lazy.rates_table.as_csv,
         "markdown": lazy.rates_table.as_markdown,
     }

@@ -29,7 +29,7 @@ from rulec.cli.options.recording_options import (
     egos_option,
     recording_or_trace_options,
 )
-from rulec.cli.options.rule_choice import refuse_unmatched, with_rules_like
+from rulec.cli.options.shared_options import refuse_unmatched, with_rules_like
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import read_machines, rulebooks_named
 from rulec.cli.verdict_outputs import FORMATS, VerdictOutputs, verdict_outputs
@@ -182,7 +182,7 @@ def command(
             results.append(_judge(own_request, rules, outputs, complaints, named))
         if len(books) > 1:
             tallies = [(rules, result.total) for rules, result in zip(books, results, strict=True)]
-            outputs.text(f"\n{lazy.side_by_side.as_text(tallies, page_width())}")
+            outputs.text(f"\n{lazy.as_columns(tallies, page_width())}")
     complaints.close()
     return ExitStatus.after(
         answered=all(result.judged and result.complete for result in results),

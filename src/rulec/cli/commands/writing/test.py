@@ -142,9 +142,9 @@ def _tested(
         width, in_full = width_of(to), wanted.in_full
         match to.form:
             case "json":
-                text = lazy.example_json.as_json(runs, covered)
+                text = lazy.example_formats.as_json(runs, covered)
             case "junit":
-                text = lazy.example_junit.as_junit(runs, covered, besides)
+                text = lazy.example_formats.as_junit(runs, covered, besides)
             case _:
                 text = lazy.example_text.as_text(runs, covered, besides, width, in_full=in_full)
         put_answer(text, to)

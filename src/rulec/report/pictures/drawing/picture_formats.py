@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from rulec.diagnostics import SourceLocation
-from rulec.diagnostics.missing_package import missing_package
+from rulec.diagnostics.code import missing_package
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.picture_messages import PNG_UNAVAILABLE

@@ -1,4 +1,7 @@
-"""The picture of one moment of a drive: the road from above, and who violates what."""
+"""The picture of one moment of a drive: the road from above, and who violates what.
+
+Rings and lines are clipped to a rectangle (Sutherland and Hodgman 1974; Liang and Barsky 1984).
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,16 @@ import numpy as np
 
 from rulec.recordings.recording import Points
 from rulec.report.pictures.drawing import canvas
-from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
-from rulec.report.pictures.drawing.clipping import clipped_lines, clipped_ring
-from rulec.report.pictures.drawing.label_placement import Placing
+from rulec.report.pictures.drawing.canvas import (
+    Area,
+    LabelText,
+    Mark,
+    Picture,
+    Placing,
+    Point,
+    Polyline,
+    Rectangle,
+)
 from rulec.report.pictures.drives.drive_scene import Body, DriveScene, SceneViolation
 
 _HEIGHT = 430.0
@@ -287,3 +297,57 @@ def chosen_moment(scene: DriveScene, at_s: float | None) -> tuple[int, SceneViol
         return (ordered[0].state, ordered[0]) if ordered else (scene.states // 2, None)
     state = scene.nearest_state(at_s)
     return state, min(ordered, key=lambda violation: abs(violation.state - state), default=None)
+
+
+def clipped_ring(ring: Sequence[Point], box: Rectangle) -> tuple[Point, ...]:
+    """The part of a ring within a rectangle; empty if there is none."""
+    points = list(ring)
+    for side, limit in enumerate(box):
+        axis, sign = side % 2, 1 if side < 2 else -1
+        kept: list[Point] = []
+        for before, point in pairwise([*points[-1:], *points]):
+            inside = sign * (point[axis] - limit) >= 0
+            if inside != (sign * (before[axis] - limit) >= 0):
+                part = (limit - before[axis]) / (point[axis] - before[axis])
+                kept.append(_between(before, point, part))
+            if inside:
+                kept.append(point)
+        points = kept
+    return tuple(points)
+
+
+def clipped_lines(line: Sequence[Point], box: Rectangle) -> Iterator[tuple[Point, ...]]:
+    """The parts of a line within a rectangle."""
+    run: list[Point] = []
+    for before, point in pairwise(line):
+        low, high = _inside(before, point, box)
+        if low >= high:
+            continue
+        start = _between(before, point, low)
+        if run and run[-1] != start:
+            yield tuple(run)
+            run = []
+        run = [*(run or [start]), _between(before, point, high)]
+    if run:
+        yield tuple(run)
+
+
+def _inside(start: Point, end: Point, box: Rectangle) -> tuple[float, float]:
+    """The part of a segment inside the box, as fractions from and to; nothing if from >= to."""
+    low, high = 0.0, 1.0
+    for side, limit in enumerate(box):
+        axis, sign = side % 2, 1 if side < 2 else -1
+        depth, change = sign * (start[axis] - limit), sign * (end[axis] - start[axis])
+        if change == 0:
+            high = high if depth >= 0 else -1.0
+        elif change > 0:
+            low = max(low, -depth / change)
+        else:
+            high = min(high, -depth / change)
+    return low, high
+
+
+def _between(start: Point, end: Point, part: float) -> Point:
+    if part in (0, 1):
+        return end if part else start
+    return start[0] + part * (end[0] - start[0]), start[1] + part * (end[1] - start[1])

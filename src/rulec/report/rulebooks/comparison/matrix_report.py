@@ -12,11 +12,11 @@ from string import ascii_uppercase, digits
 
 from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
-from rulec.report.rulebooks.comparison.diff_json import BookData
-from rulec.report.text.csv_text import csv_text
+from rulec.report.rulebooks.comparison.diff_formats import BookData
 from rulec.report.text.html_page import as_html
 from rulec.report.text.markdown import PageTexts, anchors, code, escaped
 from rulec.report.text.markdown import table as markdown_table
+from rulec.report.text.outgoing import csv_text
 from rulec.report.text.terminal_text import broken, stacked_tables, styled, visible
 from rulec.rulebook.rulebook_model import Strength
 

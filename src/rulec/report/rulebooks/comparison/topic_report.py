@@ -8,7 +8,6 @@ from itertools import groupby
 
 from rulec.report.rulebooks.document.book_document import NO_ADVICE
 from rulec.report.rulebooks.rule_list import as_json, first_provision, rules_named
-from rulec.report.text.csv_text import csv_text
 from rulec.report.text.html_page import as_html
 from rulec.report.text.markdown import (
     CONTENTS,
@@ -19,6 +18,7 @@ from rulec.report.text.markdown import (
     with_contents,
     written,
 )
+from rulec.report.text.outgoing import csv_text
 from rulec.report.text.terminal_text import broken, column_lines, cut, styled, visible
 from rulec.rulebook.rulebook_model import Rule, Rulebook, cited_law
 from rulec.rulebook.rules.rule_topics import by_group

@@ -13,8 +13,7 @@ from rulec.logic.sentences.language import Language
 from rulec.logic.sentences.sentence import Phrase
 from rulec.logic.sentences.sentence_layout import lines
 from rulec.logic.sentences.wording import amount, listed, number_text, spoken
-from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguage
-from rulec.report.rulebooks.rule_provenance import provenance
+from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguage, provenance
 from rulec.report.rulebooks.spoken_rules import sentences_of
 from rulec.report.text.formula_lines import formula_lines, plain_clauses
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.diagnostics.missing_package import missing_package
+from rulec.diagnostics.code import missing_package
 from rulec.files.read_files import opened
 from rulec.trace.formats import arrow as arrays
 from rulec.trace.formats.stream_lines import packed
