@@ -12,7 +12,6 @@ from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.language_server.writing.quick_fixes import quick_fixes
 from rulec.report.findings.code_registry import all_codes
 from rulec.syntax import parse
-from rulec.syntax.incremental.parsed_text import parsed_text
 
 HEAD = "rulebook sample\nsignal p, q\n"
 RULE = "hard rule r { require always p }\n"
@@ -129,15 +128,6 @@ def test_its_fix_is_in_no_wording(code, folder):
     assert [(one.title, one.changes) for one in said] == [
         (one.title, one.changes) for one in unsaid
     ]
-
-
-def test_offers_move_with_the_text_above_them():
-    wrong = HEAD + RULE + "hard rule x { require always (p }\n}\nhard rule y { require evr p }\n"
-    before = parsed_text(Source("sample", wrong))
-    after = wrong.replace(RULE, "# A remark.\n\n" + RULE)
-    moved, alone = parsed_text(Source("sample", after), before), parse(Source("sample", after))[1]
-    assert moved.mistakes == tuple(alone)
-    assert all(one.offers for one in alone)
 
 
 def test_many_mistakes_offer_little():

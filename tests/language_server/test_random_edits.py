@@ -8,7 +8,6 @@ from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.loader import diagnose
 from rulec.syntax import parse
-from rulec.syntax.incremental import parsed_text
 from rulec.syntax.scanner import decode
 from support.generators.random_edits import edited
 
@@ -57,7 +56,7 @@ def differing_edits(name, text, number, seed, folder):
         checked = workspace.check(document)
         alone = diagnose(str(path), text.encode(), path)
         tree, _ = parse(decode(str(path), text.encode()))
-        if checked.findings != alone.findings or checked.parsed.file != tree:
+        if checked.findings != alone.findings or checked.file != tree:
             yield text
         text = edited(text, original, random) or original
 
@@ -100,21 +99,6 @@ def test_a_mistake_in_an_edited_rule_still_names_its_provision(tmp_path):
         assert checked.findings == diagnose(str(path), text.encode(), path).findings
         (wrong,) = [one for one in checked.findings if "at_thing_x" in one.message]
         assert wrong.notes == ("rule `third` is Art. 3",)
-
-
-def test_a_pause_changes_nothing(tmp_path, monkeypatch):
-    monkeypatch.setattr(parsed_text, "_LITTLE_GROWTH", 0)
-    path = tmp_path / "small.rules"
-    workspace = EditorWorkspace((tmp_path,))
-    random, text = Random(3), BOOK
-    for _ in range(8):
-        document = workspace.open(path.as_uri(), text)
-        before = workspace.check(document)
-        workspace.rest()
-        again = workspace.check(document)
-        assert again.parsed is not before.parsed
-        assert (again.findings, again.parsed.file) == (before.findings, before.parsed.file)
-        text = edited(text, BOOK, random) or BOOK
 
 
 @pytest.mark.long

@@ -37,9 +37,7 @@ def test_it_ends_with_a_rulebook_without_errors(session, tmp_path):
 def test_what_is_shown_is_what_check_says(session, tmp_path):
     path = tmp_path / "de.rules"
     workspace = EditorWorkspace((tmp_path,))
-    for number, (waited, text) in enumerate(session):
-        if waited >= REST_S:
-            workspace.rest()
+    for number, (_, text) in enumerate(session):
         checked = workspace.check(workspace.open(path.as_uri(), text))
         if number % 5 == 0:
             assert checked.findings == found(text, path), number
@@ -52,7 +50,7 @@ TEXT = "rulebook large\nsignal p default false\nhard rule r {{ require never p }
 @pytest.fixture
 def large_texts(monkeypatch):
     """A session in which every text is large, with the versions whose findings it published."""
-    monkeypatch.setattr(editor_session, "MOST_CHARACTERS", 10)
+    monkeypatch.setattr(editor_session, "LARGE", 10)
     session, published = EditorSession(), []
     versions = session.editor.documents
     monkeypatch.setattr(session, "publish", lambda uri: published.append(versions[uri].version))
@@ -97,7 +95,7 @@ def test_what_is_closed_meanwhile_is_not_shown(large_texts):
 
 def test_a_text_that_is_not_large_is_checked_at_once(large_texts, monkeypatch):
     session, published = large_texts
-    monkeypatch.setattr(editor_session, "MOST_CHARACTERS", 1000)
+    monkeypatch.setattr(editor_session, "LARGE", 1000)
     session.check(session.editor.open(LARGE, TEXT.format(2), 2))
     assert published == [2]
     assert isinstance(session.names(LARGE)[1].whole(), lsp.Range)

@@ -33,8 +33,8 @@ from rulec.language_server.workspace.published_diagnostics import (
     view_around,
 )
 from rulec.language_server.workspace.text_positions import TextPositions
-from rulec.syntax.incremental.parsed_text import MOST_CHARACTERS
 from rulec.version import __version__
+from rulec.vocabulary.pint_units import pint_unit
 
 _IDLE_S = 0.3
 """Seconds after the last edit until other open documents, which may depend on it, are checked."""
@@ -68,10 +68,9 @@ class EditorSession(LanguageServer):
             super().report_server_error(error, source)
 
     def check(self, document: Document) -> None:
-        """Check a document and publish its findings: in the background if it is read as a whole."""
+        """Check a document and publish its findings: a large one in the background."""
         self.give_up(document.uri)
-        size = len(document.text)
-        if size > MOST_CHARACTERS or (size > LARGE and document.parsed is None):
+        if len(document.text) > LARGE:
             loop = asyncio.get_running_loop()
             due = BackgroundCheck(document, self.editor, loop, self._checked)
             self.checks_due[document.uri] = due
@@ -145,7 +144,8 @@ class EditorSession(LanguageServer):
 
     def rest(self) -> None:
         """Use a pause in typing."""
-        self.editor.rest()
+        # Pint takes 0.5 s to import, on the first unknown unit.
+        pint_unit("")
         gc.collect()
 
     def names(self, uri: str) -> tuple[DocumentNames, TextPositions] | None:
@@ -153,7 +153,7 @@ class EditorSession(LanguageServer):
         document = self.editor.document(uri)
         if document is None or uri in self.checks_due:
             return None
-        known = document.checked if len(document.text) > MOST_CHARACTERS else None
+        known = document.checked if uri in self.editor.documents else None
         try:
             names = names_in_document(known or self.editor.check(document))
         except RulecError:
@@ -171,8 +171,7 @@ class EditorSession(LanguageServer):
         view = Document(uri, view_around(document.text, positions.offset(position)))
         with self.checks_due[uri].pause, suppress(RulecError):
             checked = self.editor.check(view)
-            parsed = replace(checked.parsed, text=document.text)
-            names = names_in_document(replace(checked, parsed=parsed))
+            names = names_in_document(replace(checked, text=document.text))
             return None if names is None else (names, positions)
         return None
 

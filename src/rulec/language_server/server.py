@@ -100,6 +100,7 @@ def _documents(server: EditorSession) -> None:
 
     @server.feature(lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     def files_changed(_: lsp.DidChangeWatchedFilesParams) -> None:
+        server.editor.forget_checks()
         server.check_others("")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
@@ -215,17 +215,15 @@ def reported(
     trees: Trees,
     mistakes: Sequence[Diagnostic],
     source: Source,
-    placed: Callable[[SourceLocation], SourceLocation] = lambda place: place,
 ) -> tuple[Diagnostic, ...]:
     """The diagnostics of ``mistakes`` to report, in order, without those that comments allow.
 
-    For unknown words they name the rulebooks and vocabularies that have them. ``placed`` maps
-    places in the trees to those in a text that was edited after parsing.
+    For unknown words they name the rulebooks and vocabularies that have them.
     """
     findings = in_order(trees.name, judged_allowances(mistakes, source))
     read = [file.name.text for file in (*trees.books, *trees.vocabularies) if file.name]
     known = with_words_elsewhere(findings, read, trees.search_path)
-    return with_provisions(known, trees.books, placed)
+    return with_provisions(known, trees.books)
 
 
 def in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:

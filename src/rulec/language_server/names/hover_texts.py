@@ -71,7 +71,7 @@ def _parts(names: DocumentNames, symbol: NamedSymbol) -> Iterator[str]:
             yield f"Topic: {laid.topics[symbol.name].title.value}"
         case "file":
             yield from _book(names, symbol)
-    if symbol.span.source is not names.checked.parsed.source:
+    if symbol.span.source is not names.checked.source:
         yield f"*from {_file(names, symbol.span)}*"
 
 

@@ -292,14 +292,11 @@ class DocumentNames:
 
     def bounds(self, span: Span) -> tuple[int, int]:
         """The character offsets of a span in the document's text, or in the span's own file."""
-        if span.source is self.checked.parsed.source:
-            start = self.checked.parsed.offset(span.start)
-            return start, start + span.end - span.start
         return span.start, span.end
 
     def text_of(self, span: Span) -> str:
         """The text of the file that a span is in."""
-        own = span.source is self.checked.parsed.source
+        own = span.source is self.checked.source
         return self.checked.text if own else span.source.text
 
     def is_same(self, symbol: NamedSymbol, other: NamedSymbol, names: DocumentNames) -> bool:

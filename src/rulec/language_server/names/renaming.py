@@ -141,7 +141,7 @@ def _in_topics(
 
 
 def _heads_a_rule(book: DocumentNames, start: int, end: int) -> bool:
-    before = book.checked.parsed.source.text[:start].rstrip()
+    before = book.checked.source.text[:start].rstrip()
     return end > start and before.endswith("rule")
 
 
@@ -184,14 +184,14 @@ def _refuse_other_meaning(
     """Raise RefusedRenamingError unless all books keep their meaning."""
     trial = EditorWorkspace(editor.folders, editor.encoding)
     for uri, shown in editor.documents.items():
-        trial.documents[uri] = Document(uri, shown.text, shown.version, shown.parsed)
+        trial.documents[uri] = Document(uri, shown.text, shown.version)
     before: dict[str, CheckedDocument] = {}
     for uri in _affected(changes, symbol, name, names, editor):
         document = editor.document(uri)
         assert document is not None, "it has been read before"
         before[uri] = _checked(editor, document)
         text = changed_text(document.text, changes.get(uri, ()))
-        trial.documents[uri] = Document(uri, text, parsed=document.parsed)
+        trial.documents[uri] = Document(uri, text)
     for uri, was in before.items():
         now = _checked(trial, trial.documents[uri])
         file = was.path or was.name

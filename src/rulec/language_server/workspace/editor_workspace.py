@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from lsprotocol import types as lsp
 from pygls import uris
 
+from rulec.cancellation import step
 from rulec.diagnostics import Diagnostic, RulecError, Source
 from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.resources import rulebooks_folder
@@ -18,32 +19,46 @@ from rulec.rulebook.allowances import judged_allowances
 from rulec.rulebook.files.open_documents import shown
 from rulec.rulebook.files.search_path import read_bytes
 from rulec.rulebook.files.source_walk import sources_below
-from rulec.rulebook.loader import RulebookFile, Trees, in_order, reported, trees_of
-from rulec.rulebook.resolution_memory import ResolutionMemory, ResolvedTrees
-from rulec.rulebook.resolve import names_of, resolve_vocabulary
+from rulec.rulebook.loader import RulebookFile, Trees, day_of, in_order, reported, trees_of
+from rulec.rulebook.overlay.rulebook_overlay import RuleEntry
+from rulec.rulebook.resolve import (
+    BookNames,
+    TranslatedRule,
+    is_whole,
+    names_of,
+    resolve_vocabulary,
+    translated,
+    with_rules,
+)
+from rulec.rulebook.rulebook_model import Rulebook
 from rulec.settings import search_path
-from rulec.syntax import decode
-from rulec.syntax.incremental.parsed_text import ParsedText, parsed_text, renewed
-from rulec.vocabulary.pint_units import pint_unit
+from rulec.syntax import decode, parse, tree
+
+
+@dataclass(frozen=True, slots=True)
+class ResolvedTrees:
+    """Trees, the names their formulas can use, and the rulebook if it has no error."""
+
+    trees: Trees
+    names: BookNames
+    rulebook: Rulebook | None
 
 
 @dataclass(frozen=True, slots=True)
 class CheckedDocument:
     """A document with its parse result; findings refer to places in its text.
 
-    ``resolved`` has its trees and names; None if the text could not be parsed at all.
+    ``resolved`` has its trees and names; None if the text could not be parsed at all. ``text`` is
+    that of the document, of which ``source`` may lack rules.
     """
 
     name: str
     path: Path | None
-    parsed: ParsedText
+    text: str
+    source: Source
+    file: tree.File
     resolved: ResolvedTrees | None
     findings: tuple[Diagnostic, ...]
-
-    @property
-    def text(self) -> str:
-        """The text that was checked."""
-        return self.parsed.text
 
 
 @dataclass(slots=True)
@@ -53,10 +68,8 @@ class Document:
     uri: str
     text: str
     version: int | None = None
-    parsed: ParsedText | None = None
-    memory: ResolutionMemory = field(default_factory=ResolutionMemory)
     checked: CheckedDocument | None = None
-    """The result of the last check of a large document."""
+    """The result of the last check, as long as no document has changed since."""
 
     @property
     def path(self) -> Path | None:
@@ -107,12 +120,19 @@ class EditorWorkspace:
         known = self.documents.get(uri)
         if known is None:
             known = self.documents[uri] = self._files.pop(uri, Document(uri, text))
-        known.text, known.version, known.checked = text, version, None
+        known.text, known.version = text, version
+        self.forget_checks()
         return known
 
     def close(self, uri: str) -> None:
         """Forget a document; its file is used again."""
         self.documents.pop(uri, None)
+        self.forget_checks()
+
+    def forget_checks(self) -> None:
+        """Something has changed that any document may depend on."""
+        for document in (*self.documents.values(), *self._files.values()):
+            document.checked = None
 
     def document(self, uri: str) -> Document | None:
         """A document that is open, or a file that can be read."""
@@ -142,37 +162,51 @@ class EditorWorkspace:
             yield
 
     def check(self, document: Document) -> CheckedDocument:
-        """Check a document; only its edited parts are parsed again.
+        """Check a document. The findings are those of ``rulec check``.
 
-        The findings are those of ``rulec check``. Raises RulecError for wrong settings.
+        Raises RulecError for wrong settings.
         """
-        path, name = document.path, document.name
-        source = Source(name, document.text)
-        document.parsed = parsed = parsed_text(source, document.parsed)
+        source = Source(document.name, document.text)
         with self.as_shown():
-            folders = search_path(None if path is None else path.parent)
-            if parsed.file.kind == "vocabulary":
-                return _checked_vocabulary(name, path, parsed)
-            data = document.text.encode("utf-8", "surrogatepass")
-            try:
-                trees = trees_of(RulebookFile(source, data, path, folders), parsed.file, ())
-            except RulecError as error:
-                return CheckedDocument(name, path, parsed, None, error.diagnostics)
-            resolved = document.memory.resolved(trees)
-        diagnostics = [*parsed.mistakes, *map(parsed.in_text, resolved.findings)]
-        findings = reported(trees, diagnostics, source, parsed.placed)
-        return CheckedDocument(name, path, parsed, resolved, findings)
+            resolved, findings, file = self._checked(document, source)
+        document.checked = CheckedDocument(
+            document.name,
+            document.path,
+            document.text,
+            source,
+            file,
+            resolved=resolved,
+            findings=findings,
+        )
+        return document.checked
 
-    def rest(self) -> None:
-        """Do work in a pause that would slow down a later keystroke."""
-        # Pint takes 0.5 s to import, on the first unknown unit.
-        pint_unit("")
-        for document in list(self.documents.values()):
-            parsed = document.parsed and renewed(document.parsed)
-            if parsed is not document.parsed:
-                document.parsed = parsed
-                with suppress(RulecError):
-                    self.check(document)
+    def _checked(
+        self, document: Document, source: Source
+    ) -> tuple[ResolvedTrees | None, tuple[Diagnostic, ...], tree.File]:
+        path, (file, mistakes) = document.path, parse(source)
+        folders = search_path(None if path is None else path.parent)
+        if file.kind == "vocabulary":
+            _, meanings = resolve_vocabulary(file)
+            trees = Trees(
+                document.name, (file,), vocabularies=(), sources=(), mistakes=(), dependencies=()
+            )
+            findings = in_order(document.name, judged_allowances([*mistakes, *meanings], source))
+            return ResolvedTrees(trees, names_of((file,), at=""), None), findings, file
+        data = document.text.encode("utf-8", "surrogatepass")
+        try:
+            trees = trees_of(RulebookFile(source, data, path, folders), file, ())
+        except RulecError as error:
+            return None, error.diagnostics, file
+        names = names_of(
+            trees.books, trees.vocabularies, opaque=trees.dependencies is None, at=day_of(trees)
+        )
+        whole = trees.dependencies is not None
+        whole = whole and all(map(is_whole, (*trees.vocabularies, *trees.books)))
+        rulebook, meanings = with_rules(trees.books, names, trees.sources, _translated, whole=whole)
+        findings = reported(trees, [*mistakes, *trees.mistakes, *meanings], source)
+        if any(finding.severity == "error" for finding in findings):
+            rulebook = None
+        return ResolvedTrees(trees, names, rulebook), findings, file
 
     def positions(self, text: str) -> TextPositions:
         """The positions of a text as this editor counts them."""
@@ -205,10 +239,6 @@ class EditorWorkspace:
         return [entry.path for entry in self.documents.values() if entry.path is not None]
 
 
-def _checked_vocabulary(name: str, path: Path | None, parsed: ParsedText) -> CheckedDocument:
-    _, meanings = resolve_vocabulary(parsed.file)
-    trees = Trees(name, (parsed.file,), vocabularies=(), sources=(), mistakes=(), dependencies=())
-    diagnostics = judged_allowances([*parsed.mistakes, *meanings], Source(name, parsed.text))
-    findings = in_order(name, diagnostics)
-    names = names_of((parsed.file,), at="")
-    return CheckedDocument(name, path, parsed, ResolvedTrees(trees, names, None, ()), findings)
+def _translated(entry: RuleEntry, names: BookNames, confirmed: bool) -> TranslatedRule:
+    step()
+    return translated(entry, names, confirmed)

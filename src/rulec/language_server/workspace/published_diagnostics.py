@@ -19,7 +19,6 @@ from lsprotocol import types as lsp
 from rulec.cancellation import CancelledError, is_wanted
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.language_server.workspace.editor_workspace import Document, EditorWorkspace, uri_of
-from rulec.rulebook.resolution_memory import ResolutionMemory
 from rulec.syntax.keywords import CHANGE_WORDS, ITEM_WORDS, RULE_WORDS
 
 SOURCE = "rulec"
@@ -104,7 +103,7 @@ def union(by_document: Mapping[str, Mapping[str, list[Diagnostic]]], file: str) 
     return distinct([*own, *others])
 
 
-LARGE = 50_000
+LARGE = 20_000
 """Characters of a text that takes longer to check than a keystroke may."""
 
 # Items begin on lines of their own; a match begins with the end of the line before.
@@ -137,7 +136,7 @@ class BackgroundCheck:
     def _check(self) -> None:
         is_wanted.set(self._goes_on)
         # A copy, since the document may be edited meanwhile.
-        own = replace(self.document, memory=ResolutionMemory())
+        own = replace(self.document)
         try:
             own.checked = self.editor.check(own)
             findings = own.checked.findings
@@ -150,7 +149,7 @@ class BackgroundCheck:
     def _end(self, own: Document, findings: tuple[Diagnostic, ...]) -> None:
         if not self.is_cancelled:
             known = self.document
-            known.parsed, known.memory, known.checked = own.parsed, own.memory, own.checked
+            known.checked = own.checked
             self.done(known, findings)
 
 

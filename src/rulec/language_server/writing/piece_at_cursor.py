@@ -46,8 +46,7 @@ def piece_at(names: DocumentNames, offset: int) -> PieceAtCursor | None:
     start = offset
     while start > 0 and (text[start - 1].isalnum() or text[start - 1] == "_"):
         start -= 1
-    begin = _begin(names, start)
-    before = text[begin:start]
+    before = text[:start]
     line = before[before.rfind("\n") + 1 :]
     if "#" in line and line.count('"', 0, line.index("#")) % 2 == 0:
         return None
@@ -70,14 +69,6 @@ def piece_at(names: DocumentNames, offset: int) -> PieceAtCursor | None:
     if last is None or tokens[-1].text == "{":
         return _none_yet(start, in_vocabulary=in_vocabulary)
     return _of("item", last, start, (before, tokens), in_vocabulary=in_vocabulary)
-
-
-def _begin(names: DocumentNames, start: int) -> int:
-    """The start of the segment to read for a character, to avoid reading more."""
-    parsed = names.checked.parsed
-    before = [at for at in parsed.starts if at <= start]
-    # The last item may still be empty, so begin with the one before it.
-    return before[-2] if len(before) > 1 else 0
 
 
 def _is_balanced(tokens: list[Token]) -> bool:

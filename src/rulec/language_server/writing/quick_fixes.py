@@ -149,7 +149,7 @@ class _Trial:
 
         A mistake that hid others counts as fixed if it is gone and the text can then be parsed.
         """
-        tried = Document(self.document.uri, text, parsed=self.document.parsed)
+        tried = Document(self.document.uri, text)
         try:
             diagnostics = self.editor.check(tried).findings
         except RulecError:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from rulec.diagnostics import Diagnostic, SourceLocation
+from rulec.diagnostics import Diagnostic
 from rulec.rulebook.rulebook_model import provision_note
 from rulec.syntax import tree
 from rulec.syntax.messages.structure import UNBALANCED_BRACE
@@ -15,13 +15,11 @@ from rulec.syntax.messages.structure import UNBALANCED_BRACE
 def with_provisions(
     findings: Iterable[Diagnostic],
     books: Sequence[tree.File],
-    placed: Callable[[SourceLocation], SourceLocation],
 ) -> tuple[Diagnostic, ...]:
     """Findings; those within a rule get a note with what it cites.
 
     ``books`` are those that a rulebook extends, the most general first, and itself; an override
-    that cites nothing has the provision of the overridden rule. ``placed`` maps places in their
-    trees to places in findings.
+    that cites nothing has the provision of the overridden rule.
     """
     diagnostics = tuple(findings)
     if not diagnostics:
@@ -35,7 +33,7 @@ def with_provisions(
             if item.cite is not None:
                 cited[item.name.text] = item.cite.value
             if provision := cited.get(item.name.text):
-                place = placed(item.span.place)
+                place = item.span.place
                 lines = (place.line or 0, place.end_line or 0)
                 note = provision_note(item.name.text, provision)
                 rules.setdefault(place.file, []).append((*lines, note))

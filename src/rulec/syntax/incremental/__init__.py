@@ -1,1 +1,0 @@
-"""Parses a text again after an edit, reading only the items that differ."""
