@@ -27,6 +27,7 @@ from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.partition.prediction_worlds import PredictedPath
 from rulec.planning.maneuvers import Maneuvers
+from rulec.planning.planning_messages import MOST_WORLDS
 from rulec.planning.product.possible_instances import HARD, SOFT
 from rulec.planning.rule_instances import in_rule_words, past_for
 from rulec.rulebook.rules.axiom_instances import counts
@@ -81,9 +82,6 @@ def _independent(events: frozenset[Event]) -> Iterator[frozenset[Event]]:
             about |= {obstacle for event in joining for obstacle, _ in event}
         yield frozenset(group)
 
-
-MOST_WORLDS = 10_000
-"""The most worlds that are examined one by one for a rule that counts objects."""
 
 Lost = dict[tuple[str, ...], set[Event]]
 """For the objects (of the scenario) that a rule is about, the events in which it is violated."""
