@@ -8,7 +8,6 @@ from inspect import cleandoc
 from typing import Any
 
 import msgspec
-from rulec.report.tests.example_formats import ExamplesRun
 
 from rulec.automata.bundle.bundle_schema import BundleFile
 from rulec.fleet.finding_columns import FindingRowLine
@@ -28,6 +27,7 @@ from rulec.report.rulebooks.proof_report import ProofsDocument
 from rulec.report.rulebooks.rule_list import RuleListDocument
 from rulec.report.rulebooks.rule_page import RulesDocument
 from rulec.report.rulebooks.word_texts import WordData
+from rulec.report.tests.example_formats import ExamplesRun
 from rulec.report.text.listing import ListingDocument
 from rulec.report.verdicts.recording_json import NotDriven, RecordedNotJudged, RecordedVerdict
 from rulec.report.verdicts.running_verdicts import StateRefused, StateVerdict

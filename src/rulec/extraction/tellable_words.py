@@ -80,7 +80,6 @@ _SIGNED = frozenset(
 _LAMPS = frozenset(("hazard_lights", "indicator", "warning_lights"))
 _OWN_LAMPS = frozenset(("front_fog_lamps", "headlamps", "rear_fog_lamps"))
 _ROAD_KINDS = frozenset(("built_up", "lane_kind", "road_class"))
-_ROAD_KINDS_OF_123D = _ROAD_KINDS - {"lane_kind"}
 _ARGOVERSE = _EITHER - _SIGNED - _LAMPS - _ROAD_KINDS
 """Argoverse maps have lanes, marks and crossings; objects have places, kinds and sizes."""
 
@@ -125,7 +124,6 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     | {"icy", "night", "no_overtaking_sign", "raining", "visibility", "wet"},
     "argoverse-motion": _ARGOVERSE,
     "argoverse-sensor": _ARGOVERSE,
-    "123d": _ARGOVERSE | (_SIGNED - {"on_priority_road", "turn_on_red_sign"}) | _ROAD_KINDS_OF_123D,
 }
 """Format -> words that some file of it can supply; one may lack signs, lamps or weather."""
 

@@ -176,12 +176,4 @@ FORMATS = (
         recognises=lambda glance: glance.name.endswith((".pkl", ".pickle")),
         read=_one("scenarionet.scenarionet_file.read_scenarionet"),
     ),
-    RecordingFormat(
-        name="123d",
-        title="logs of 123D: Argoverse 2, nuPlan, nuScenes, Waymo and others in one form",
-        files="sync.arrow, or its folder",
-        recognises=lambda glance: is_named(glance.path, "sync.arrow"),
-        read=_one_on_map("d123.log_recording.read_d123"),
-        roads="beside it, or --map",
-    ),
 )

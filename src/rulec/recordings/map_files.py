@@ -49,12 +49,6 @@ def _roads(place: str, *, with_lights: bool = False) -> Callable[[Path, float], 
 _read_lanes = _roads("lanes.lane_table.read_lane_map")
 
 
-def _is_d123(glance: Glance) -> bool:
-    return glance.head.startswith(b"ARROW1") and all(x in glance.head for x in _D123_COLUMNS)
-
-
-_D123_COLUMNS = (b"object_id", b"map_layer", b"features", b"wkb")
-
 MAP_FORMATS = (
     MapFormat(
         "sumo",
@@ -97,13 +91,6 @@ MAP_FORMATS = (
         MAP_ARCHIVES,
         lambda glance: is_named(glance.path, MAP_ARCHIVES),
         _roads("argoverse.map_archive.read_map_archive"),
-    ),
-    MapFormat(
-        "123d",
-        "maps of 123D",
-        "map.arrow, DATASET_PLACE.arrow",
-        _is_d123,
-        _roads("d123.map_lanes.read_d123_map"),
     ),
 )
 

@@ -30,7 +30,7 @@ NOT_A_RECORDING = Code(
     "R0610",
     title="a file cannot be read as recorded traffic",
     why="Supported are the formats that `rulec list formats` lists: CommonRoad, SUMO, ASAM OSI, "
-    "Argoverse 2, Waymo, ScenarioNet, 123D, tracks as tables, and maps. The format is detected "
+    "Argoverse 2, Waymo, ScenarioNet, tracks as tables, and maps. The format is detected "
     "from the file's name and first bytes; otherwise give it by `--input-format`. A file must be "
     "complete and valid; the message names the line, byte, row or record where it is not. XML "
     "must not have a `DOCTYPE`, and a pickle must not contain code, since these could do anything. "

@@ -15,7 +15,6 @@ from rulec.recordings.recording_files import read_recordings
 from rulec.recordings.recording_format import RecordingSource
 from rulec.recordings.track import Track
 from support.builders import argoverse_files as argoverse
-from support.builders import d123_files as d123
 from support.builders.track_tables import HEAD, driving, table, written
 from support.mutations.format_samples import RECORDINGS
 
@@ -37,15 +36,8 @@ def far_archive(folder):
     return file
 
 
-def far_arrow(folder):
-    (folder / "far").mkdir()
-    left, right = (d123.line((1e5, y), (1.001e5, y)) for y in (3.5, 0.0))
-    return d123.write_map(folder / "far", [d123.lane(1, left, right)])
-
-
 FAR = {
     **dict.fromkeys(("argoverse-motion", "argoverse-sensor"), far_archive),
-    "123d": far_arrow,
     **dict.fromkeys(("levelx", "interaction", "ngsim", "omega-prime", "tracks", "osi"), far_lanes),
 }
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.waymo.waymo_file import WAYMO
 from support.builders import argoverse_files as argoverse
-from support.builders import d123_files, lanelet2_files, mcap_files, opendrive_files, sumo_files
+from support.builders import lanelet2_files, mcap_files, opendrive_files, sumo_files
 from support.builders import osi_traces as osi
 from support.builders import track_tables as tables
 from support.builders import waymo_files as waymo
@@ -186,10 +186,6 @@ def _osi() -> Iterator[Sample]:
         yield Sample("some.mcap", {"some.mcap": packed})
 
 
-def _d123() -> Iterator[Sample]:
-    yield Sample("sync.arrow", _written(lambda folder: d123_files.drive(folder, 4)))
-
-
 RECORDINGS: Mapping[str, Callable[[], Iterator[Sample]]] = {
     "commonroad": _commonroad,
     "commonroad-protobuf": _commonroad_protobuf,
@@ -205,7 +201,6 @@ RECORDINGS: Mapping[str, Callable[[], Iterator[Sample]]] = {
     "tracks": _tracks,
     "osi": _osi,
     "scenarionet": _scenarionet,
-    "123d": _d123,
 }
 """The samples of each format of recordings; mistakes may be in every file of a sample."""
 
@@ -219,13 +214,6 @@ def _lanelet2() -> Iterator[Sample]:
     yield from _alone("map.osm", text, text.replace('lat="" lon=""', 'lat="49" lon="8"'))()
 
 
-def _d123_map() -> Iterator[Sample]:
-    return _alone(
-        "map.arrow",
-        _written(lambda folder: d123_files.write_map(folder, d123_files.town()))["map.arrow"],
-    )()
-
-
 MAPS: Mapping[str, Callable[[], Iterator[Sample]]] = {
     "sumo": _alone("road.net.xml", sumo_files.ROAD_NET),
     "opendrive": _alone("made.xodr", opendrive_files.every_element()),
@@ -233,6 +221,5 @@ MAPS: Mapping[str, Callable[[], Iterator[Sample]]] = {
     "lanelet2": _lanelet2,
     "lanes": _alone("lanes.csv", tables.LANES, tables.EVERY_COLUMN_OF_LANES),
     "argoverse": _alone("log_map_archive_a.json", _TOWN),
-    "123d": _d123_map,
 }
 """The samples of each format of maps."""

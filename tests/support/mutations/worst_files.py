@@ -164,7 +164,7 @@ WORST: Mapping[str, Callable[[int], Files]] = {
         f"{name}: zeros": lambda n, name=name: _other(
             name, next(RECORDINGS[name]()).entry, bytes(500_000 * n)
         )
-        for name in ("argoverse-sensor", "123d")
+        for name in ("argoverse-sensor",)
     },
 }
 """What is asked for -> files of it; their size and what they ask for grow with a number."""

@@ -14,7 +14,6 @@ from pyarrow import parquet
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.waymo.waymo_file import WAYMO
 from support.builders import argoverse_files as argoverse
-from support.builders import d123_files as d123
 from support.builders import osi_traces as osi
 from support.builders import sumo_files as sumo
 from support.builders import waymo_files as waymo
@@ -329,48 +328,6 @@ def scenarionet(folder, cars):
     return file, {str(100 + car.number): car.number for car in cars}
 
 
-def log_of_123d(folder, cars):
-    """The first car is ego, whose poses are those of a place a metre behind its middle."""
-    moments = [d123.SECOND_US + 100_000 * k for k in _times(cars)]
-    own, *others = cars
-    ego = {
-        moment: d123.pose(own.x[k] - np.cos(turned), own.y[k] - np.sin(turned), turned)
-        for k, (moment, turned) in enumerate(zip(moments, own.heading, strict=True))
-    }
-    size = (LENGTH, WIDTH, 1.5)
-    boxes = [
-        [
-            d123.box(f"c{car.number}", d123.CAR, car.x[k], car.y[k], car.heading[k], size)
-            for car in others
-        ]
-        for k in _times(cars)
-    ]
-    file = d123.write_log(folder, moments, boxes, ego)
-    key = "ego_state_se3"
-    poses = {
-        f"{key}.timestamp_us": (pyarrow.int64(), list(ego)),
-        f"{key}.imu_se3": (pyarrow.list_(pyarrow.float64(), 7), list(ego.values())),
-    }
-    about = {"length": LENGTH, "width": WIDTH, "center_to_imu_se3": d123.pose(1.0, 0.0)}
-    d123.arrow_file(folder / f"{key}.arrow", poses, about)
-
-    def line(y, back=False):
-        return d123.line(*((x, y) for x in ((ENDS, BEGINS) if back else (BEGINS, ENDS))))
-
-    limit = {"speed_limit_mps": LIMIT_MPS}
-    lanes = [
-        d123.lane(1, line(_BROKEN), line(_EDGE), left_lane_id=2, **limit),
-        d123.lane(2, line(_SOLID), line(_BROKEN), right_lane_id=1, left_lane_id=3, **limit),
-        d123.lane(3, line(_SOLID, True), line(_FAR_EDGE, True), left_lane_id=2, **limit),
-    ]
-    kinds = ((_EDGE, 11), (_BROKEN, 4), (_SOLID, 10), (_FAR_EDGE, 11))
-    paint = [
-        d123.road_line(k, kind, (BEGINS, y), (ENDS, y)) for k, (y, kind) in enumerate(kinds, 50)
-    ]
-    d123.write_map(folder, [*lanes, *paint])
-    return file, {"ego": own.number, **{f"c{car.number}": car.number for car in others}}
-
-
 WRITERS = {
     "CommonRoad": commonroad,
     "SUMO": sumo_fcd,
@@ -380,5 +337,4 @@ WRITERS = {
     "Argoverse 2": argoverse_motion,
     "Waymo": waymo_records,
     "ScenarioNet": scenarionet,
-    "123D": log_of_123d,
 }

@@ -101,10 +101,7 @@ BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
         "Waymo scenario": AUTO_LABELS,
         "Argoverse 2 motion forecasting": TRACKER,
         "Argoverse 2 sensor log": LIDAR,
-        "123D log of Argoverse 2": LIDAR,
-        "123D log of Waymo": AUTO_LABELS,
         # If the data set is unknown, its least accurate one counts
-        "123D log": KEYFRAMES,
         "ScenarioNet scenario": KEYFRAMES,
         "ScenarioNet scenario of Waymo": AUTO_LABELS,
     }

@@ -1,1 +1,0 @@
-"""Logs and maps of 123D, stored in Arrow files."""
