@@ -63,7 +63,7 @@ def test_misuse_looks_like_other_mistakes(capsys):
     assert (status, out) == (2, "")
     first, usage, way_out = err.splitlines()
     assert first.startswith("error: there is no code and no word `R9999x`")
-    assert usage == "  = usage: rulec explain [OPTIONS] [CODE|WORD]..."
+    assert usage == "  = usage: rulec explain [OPTIONS] [CODE|WORD]... [FILE]..."
     assert way_out == "  = help: `rulec help explain` says more"
 
 

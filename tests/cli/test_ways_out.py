@@ -122,7 +122,7 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["verify", "x"], "error: `-r` or `--rulebook` is missing\n"),
         (["test", "-r", "de"], "the rulebook is given without `-r`, as in `rulec test de`"),
         (["monitor", "--rulebook", "de"], "without `--rulebook`, as in `rulec monitor de`"),
-        (["explain", "-r", "de"], "no option `-r` here; the verbs that judge have it"),
+        (["explain", "-r", "de"], "error: give a code or a word, such as `R0104`"),
         (["rates", "f.csv", "-r", "de"], "the verbs that judge have it, such as `rulec verify`"),
         (
             ["maneuvers", "s2", "-r", "de", "--list", "-1"],

@@ -39,7 +39,7 @@ LATE = {
     "extraction/selection.py": (1, MESSAGE),
     "extraction/tellable_words.py": (1, NUMPY),
     "files/read_files.py": (1, FORMAT),
-    "fleet/runs/engines.py": (2, OPTIONAL),
+    "fleet/runs/fleet_run.py": (2, OPTIONAL),
     "resources.py": (1, MESSAGE),
     "lazy_loading.py": (1, "ast takes 3 ms, not for `rulec --version`"),
     "monitoring/batch/joined/joined_traces.py": (1, UNKNOWN),

@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from rulec.fleet.runs import fleet_summary
     from rulec.fleet.runs.fleet_run import FleetRun, FleetSettings, run_fleet
     from rulec.language_server.server import serve
+    from rulec.monitoring.assumptions import Assumptions
     from rulec.monitoring.batch.by_states import rulebook_for_trace
     from rulec.monitoring.explain.explanation import Explanation, explain
     from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of_many, idle_rules

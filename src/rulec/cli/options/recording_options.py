@@ -11,7 +11,6 @@ import click
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import RenamedOption, input_format_option
 from rulec.cli.options.shared_options import asked, finite, gathered
-from rulec.monitoring.assumptions import Assumptions
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_format import RecordingSource
 from rulec.trace import Value
@@ -169,7 +168,9 @@ def as_typed(*given: RecordingOptions | DrivesOptions) -> Iterator[str]:
                 yield str(one)
 
 
-def assumptions(ends: Ending | None, texts: Sequence[str], vocabulary: Vocabulary) -> Assumptions:
+def assumptions(
+    ends: Ending | None, texts: Sequence[str], vocabulary: Vocabulary
+) -> lazy.Assumptions:
     """Assumptions about traces. Raises click.UsageError."""
     values: Mapping[str, Value] = {}
     if named := [text for text in texts if text != "defaults"]:
@@ -177,7 +178,7 @@ def assumptions(ends: Ending | None, texts: Sequence[str], vocabulary: Vocabular
             values = lazy.assumption_options(named, vocabulary)
         except ValueError as problem:
             raise click.UsageError(_sentence(problem)) from None
-    return Assumptions(ends, values, len(named) < len(texts))
+    return lazy.Assumptions(ends, values, len(named) < len(texts))
 
 
 def _sentence(problem: ValueError) -> str:

@@ -82,8 +82,7 @@ def _tallies(sent: bytes, units: Any) -> dict[str, list[bytes]]:
 def ray_engine() -> Engine:
     """Ray as an engine, on the current cluster or here. Raises RulecError R0713 without it."""
     try:
-        import ray  # an extra, and seconds
-        import ray.data  # as above
+        import ray.data  # an extra, and seconds
     except ImportError:
         raise engine_missing("ray", "ray[data]") from None
     return partial(_judged_by_ray, ray)

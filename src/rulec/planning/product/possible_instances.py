@@ -248,9 +248,6 @@ def graph_bindings(
     cast = Cast(graph.objects, vocabulary, len(graph.states), graph.present)
     if not cast.has_many(types_of(rule)):
         return cast.bindings(rule)
-    # Imported late (10 ms): only if there are many choices.
-    from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
-
     nodes = NodesInTurn(graph)
     in_nodes = Cast(graph.objects, vocabulary, len(nodes.states), nodes.present)
     bindings = doubtful_bindings(
