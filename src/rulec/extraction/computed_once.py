@@ -24,7 +24,8 @@ def kept_in(name: str) -> Callable[[Callable[Asked, Found]], Callable[Asked, Fou
     def keeping(compute: Callable[Asked, Found]) -> Callable[Asked, Found]:
         @wraps(compute)
         def found(*asked: Asked.args, **named: Asked.kwargs) -> Found:
-            known, key = results(asked[0]), (compute, *asked[1:])
+            # By its public name, as which another process finds it when results are sent.
+            known, key = results(asked[0]), (found, *asked[1:])
             if key not in known:
                 known[key] = compute(*asked, **named)
             value: Found = known[key]
