@@ -3,6 +3,7 @@
 import pytest
 
 from rulec import parse_rulebook
+from rulec.analysis.diff.comparison_matrix import growing_matrices
 from rulec.analysis.diff.rulebook_comparison import diff_rulebooks
 
 WORDS = """rulebook {name}
@@ -81,3 +82,49 @@ def test_the_names_of_variables_say_nothing():
 def test_other_rules_are_as_equal_as_before():
     first, second = (f"define near(c: car) = gap(c) < {n} m" for n in (3, 5))
     assert relation(first, second, "flows") == "equal"
+
+
+CHAIN = """rulebook {name}
+type car
+quantity speed in km/h default 0
+quantity difference(c: car) in km/h default 0
+quantity gap(c: car) in m default 1000
+signal too_close(c: car)
+signal bothers(c: car)
+signal slow
+signal gains(c: car)
+param reaction : time = {reaction}
+define too_close(c: car) = gap(c) < reaction * speed
+define bothers(c: car) = too_close(c)
+define slow = 5 m / speed >= reaction
+define gains(c: car) = gap(c) * gap(c) < 1 m * reaction * (speed - difference(c))
+hard rule keeps(c: car) {{ require always not bothers(c) }}
+hard rule many {{ require always (count c: car (too_close(c))) * speed <= 5 km/h }}
+hard rule slows {{ require always slow }}
+hard rule gaining(c: car) {{ require always not gains(c) }}
+hard rule other {{ require always speed < 50 km/h }}
+"""
+CHAINED = {
+    "keeps": "laxer",
+    "many": "incomparable",
+    "slows": "laxer",
+    # What one gains may be negative, so that more time for it is less
+    "gaining": "incomparable",
+    "other": "equal",
+}
+
+
+def chained():
+    return [
+        parse_rulebook(CHAIN.format(name=name, reaction=reaction))
+        for name, reaction in (("one", "1 s"), ("two", "2 s"))
+    ]
+
+
+def test_what_is_defined_by_what_differs_differs():
+    assert {pair.name: pair.relation for pair in diff_rulebooks(*chained()).pairs} == CHAINED
+
+
+def test_a_matrix_tells_definitions_apart():
+    *_, matrix = growing_matrices(chained())
+    assert {rule.name: rule.relation("one", "two") for rule in matrix.rules} == CHAINED

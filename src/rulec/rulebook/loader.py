@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from datetime import date
 from pathlib import Path
 
@@ -14,12 +15,54 @@ from rulec.rulebook.files.reference_messages import vocabulary_for_rulebook
 from rulec.rulebook.files.referenced_files import Book, ReferencedFiles, source_file
 from rulec.rulebook.overlay.rulebook_overlay import law_line
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
-from rulec.rulebook.rulebook_model import Loaded, Rulebook, SourceFile, Traffic
-from rulec.rulebook.rules.cited_rules import with_provisions
+from rulec.rulebook.rulebook_model import Loaded, Rulebook, SourceFile, Traffic, provision_note
 from rulec.rulebook.words_elsewhere import with_words_elsewhere
 from rulec.syntax import decode, parse, tree
 from rulec.syntax.caching.tree_cache import parsed
+from rulec.syntax.messages.structure import UNBALANCED_BRACE
 from rulec.vocabulary import Vocabulary
+
+
+def with_provisions(
+    findings: Iterable[Diagnostic],
+    books: Sequence[tree.File],
+) -> tuple[Diagnostic, ...]:
+    """Findings; those within a rule get a note with what it cites.
+
+    ``books`` are those that a rulebook extends, the most general first, and itself; an override
+    that cites nothing has the provision of the overridden rule.
+    """
+    diagnostics = tuple(findings)
+    if not diagnostics:
+        return diagnostics
+    cited: dict[str, str] = {}
+    rules: dict[str, list[tuple[int, int, str]]] = {}
+    for book in books:
+        for item in book.items:
+            if not isinstance(item, tree.RuleItem):
+                continue
+            if item.cite is not None:
+                cited[item.name.text] = item.cite.value
+            if provision := cited.get(item.name.text):
+                place = item.span.place
+                lines = (place.line or 0, place.end_line or 0)
+                note = provision_note(item.name.text, provision)
+                rules.setdefault(place.file, []).append((*lines, note))
+    return tuple(_noted(finding, rules) for finding in diagnostics)
+
+
+def _noted(finding: Diagnostic, rules: dict[str, list[tuple[int, int, str]]]) -> Diagnostic:
+    place = finding.place
+    if finding.code == UNBALANCED_BRACE.code and finding.labels:
+        # It stands in the next rule, where something should have ended; its label is in this one.
+        place = finding.labels[0].place
+    if place is None or place.line is None:
+        return finding
+    within = rules.get(place.file, [])
+    index = bisect_right(within, place.line, key=lambda entry: entry[0]) - 1
+    if index < 0 or place.line > within[index][1]:
+        return finding
+    return replace(finding, notes=(*finding.notes, within[index][2]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,13 @@ from fractions import Fraction
 from pathlib import Path
 from string import ascii_uppercase
 
+from rulec.analysis.diff.meanings_apart import words_apart
 from rulec.analysis.diff.rule_comparison import RuleRelation, rule_relation
-from rulec.analysis.diff.rulebook_comparison import rules_matching
+from rulec.analysis.diff.rulebook_comparison import diff_rulebooks, rules_matching
 from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler, at_one_step
 from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.diagnostic import at
+from rulec.logic.free_names import names_of
 from rulec.resource_limits import COMPARISONS
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook
@@ -148,6 +150,7 @@ class _LawsSoFar:
     """Compiled rules, by rulebook, name and step, and the relations between their laws."""
 
     step_s: Fraction | None
+    books: dict[str, Rulebook] = field(default_factory=dict)
     compiler: SharedCompiler = field(default_factory=SharedCompiler)
     sides: dict[tuple[str, str, Fraction], AnalyzedRule] = field(default_factory=dict)
     relations: dict[tuple[int, int], RuleRelation] = field(default_factory=dict)
@@ -155,6 +158,7 @@ class _LawsSoFar:
     def classified(self, matrix: ComparisonMatrix) -> ComparisonMatrix:
         """The matrix with the laws of the last rulebook's rules."""
         book = matrix.books[-1].name
+        self.books[book] = matrix.books[-1]
         new = {rule.name: self._to_compare(rule, book) for rule in matrix.rules}
         self._compile(matrix.books, {name: rules for name, rules in new.items() if len(rules) > 1})
         rules = [
@@ -196,7 +200,12 @@ class _LawsSoFar:
         for name in earlier:
             step_s = versions[name].step_s
             ours, theirs = (self.sides[each, rule.name, step_s] for each in (book, name))
-            relation = self._relation(ours, theirs)
+            pair = self.books[book], self.books[name]
+            read = names_of(versions[book].formula) | names_of(versions[name].formula)
+            if read & pair[0].vocabulary.meanings.keys() and read & words_apart(*pair):
+                relation = diff_rulebooks(*pair, [rule.name], self.step_s).pairs[0].relation
+            else:
+                relation = self._relation(ours, theirs)
             if relation == "equal":
                 return replace(rule, laws={**rule.laws, book: len(compared)})
             compared.append(relation)

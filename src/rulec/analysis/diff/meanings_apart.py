@@ -6,36 +6,61 @@ The same expression with another parameter is ordered by it, if no number in it 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from fractions import Fraction
+from math import inf
+from typing import TypeAlias
 
 from rulec.logic import formula as ltl
-from rulec.logic.free_names import rename_variables
+from rulec.logic.free_names import names_of, rename_variables
 from rulec.rulebook.rulebook_model import Axiom, Rulebook, Variable
 from rulec.vocabulary import Signal
 from rulec.vocabulary.vocabulary_model import Meaning
 
+Implied: TypeAlias = AbstractSet[tuple[str, str]]
+"""Words, and words that hold whenever these do."""
 
-def told_apart(first: Rulebook, second: Rulebook) -> tuple[Rulebook, Rulebook]:
+
+def words_apart(first: Rulebook, second: Rulebook) -> frozenset[str]:
+    """The words that two rulebooks define differently, or by words that they do."""
+    own, theirs = first.vocabulary, second.vocabulary
+    apart: set[str] = set()
+    for name, meaning in own.meanings.items():
+        other, declared = theirs.meanings.get(name), own.declarations[name]
+        if other is None or declared != theirs.declarations.get(name):
+            continue
+        is_other = _of_places(meaning) != _of_places(other)
+        if isinstance(declared, Signal) and (is_other or not apart.isdisjoint(meaning.reads)):
+            apart.add(name)
+    return frozenset(apart)
+
+
+def with_words_apart(first: Rulebook, second: Rulebook) -> tuple[Rulebook, Rulebook]:
     """The rulebooks, in which words with two meanings are two words with what is known of both."""
+    different = words_apart(first, second)
     apart: dict[str, tuple[str, str]] = {}
     axioms: list[Axiom] = []
-    for name, meaning in first.vocabulary.meanings.items():
-        other = second.vocabulary.meanings.get(name)
-        declared = first.vocabulary.declarations[name]
-        if other is None or declared != second.vocabulary.declarations.get(name):
-            continue
-        own, theirs = (_of_places(each) for each in (meaning, other))
-        if own != theirs and isinstance(declared, Signal):
-            names = apart[name] = (
-                _named(name, first.name, meaning),
-                _named(name, second.name, other),
-            )
-            variables = [Variable(f"x{n}", kind) for n, kind in enumerate(declared.parameters, 1)]
-            words = [ltl.Atom(word, tuple([own.name for own in variables])) for word in names]
-            for cause, effect in _implications((own, theirs), words):
-                implied = ltl.Binary(ltl.BinaryOperator.IMPLIES, cause, effect)
-                axioms.append(Axiom(tuple(variables), implied))
+    implied: set[tuple[str, str]] = set()
+    # In this order a word comes after those that it is defined by
+    for name in (name for name in first.vocabulary.meanings if name in different):
+        meanings = [book.vocabulary.meanings[name] for book in (first, second)]
+        names = [
+            _named(name, book.name, own)
+            for book, own in zip((first, second), meanings, strict=True)
+        ]
+        own, theirs = (
+            _with_names(_of_places(each), {word: both[side] for word, both in apart.items()})
+            for side, each in enumerate(meanings)
+        )
+        apart[name] = names[0], names[1]
+        kinds = first.vocabulary.declarations[name].parameters
+        variables = [Variable(f"x{place}", kind) for place, kind in enumerate(kinds, 1)]
+        words = [ltl.Atom(word, tuple([each.name for each in variables])) for word in names]
+        for cause, effect in _implications((own, theirs), words, implied):
+            implied.add((cause.name, effect.name))
+            follows = ltl.Binary(ltl.BinaryOperator.IMPLIES, cause, effect)
+            axioms.append(Axiom(tuple(variables), follows))
     if not apart:
         return first, second
     first, second = (
@@ -74,8 +99,12 @@ def _with_words(
 
 def _with_names(formula: ltl.Formula, names: dict[str, str]) -> ltl.Formula:
     match formula:
-        case ltl.Calculated():
-            return formula
+        case ltl.Calculated(name=name) if name in names:
+            return ltl.Atom(names[name], formula.arguments)
+        case ltl.Calculated() if read := names_of(formula) & names.keys():
+            # Not looked into: another word for each choice of what it counts by
+            spelled = f"{formula.name} by {', '.join(names[word] for word in sorted(read))}"
+            return ltl.Atom(spelled, formula.arguments)
         case ltl.Atom(name=name) if name in names:
             return replace(formula, name=names[name])
         case ltl.Comparison(terms):
@@ -92,29 +121,28 @@ def _in_count(term: ltl.Term, names: dict[str, str]) -> ltl.Term:
 
 
 def _implications(
-    formulas: tuple[ltl.Formula, ltl.Formula], words: list[ltl.Atom]
+    formulas: tuple[ltl.Formula, ltl.Formula], words: list[ltl.Atom], known: Implied
 ) -> Iterator[tuple[ltl.Atom, ltl.Atom]]:
     own, theirs = formulas
-    if _implies(own, theirs):
-        yield words[0], words[1]
-    if _implies(theirs, own):
-        yield words[1], words[0]
+    for cause, effect, pair in ((own, theirs, words), (theirs, own, words[::-1])):
+        if _implies(cause, effect, known):
+            yield pair[0], pair[1]
 
 
-def _implies(cause: ltl.Formula, effect: ltl.Formula) -> bool:
+def _implies(cause: ltl.Formula, effect: ltl.Formula, known: Implied) -> bool:
     """Whether a formula surely implies one of the same form; False where the form tells nothing."""
     if cause == effect:
         return True
     match cause, effect:
-        case ltl.Comparison(), ltl.Comparison() if cause.terms == effect.terms:
-            return _is_within(cause.relation, effect.relation, effect.limit - cause.limit)
-        case ltl.Calculated(), ltl.Calculated():
-            less = _ends(effect.number, cause.number)
+        case ((ltl.Comparison() | ltl.Calculated()), (ltl.Comparison() | ltl.Calculated())):
+            less = _ends(_compared(effect), _compared(cause))
             return less is not None and _is_within(cause.relation, effect.relation, less)
+        case ltl.Atom(), ltl.Atom() if cause.arguments == effect.arguments:
+            return (cause.name, effect.name) in known
         case ltl.Unary(), ltl.Unary() if cause.operator is effect.operator:
-            return _in_order(cause, effect)
+            return _in_order(cause, effect, known)
         case ltl.Binary(), ltl.Binary() if cause.operator is effect.operator:
-            return _in_order(cause, effect)
+            return _in_order(cause, effect, known)
     return False
 
 
@@ -132,7 +160,9 @@ _GROWS: dict[ltl.UnaryOperator | ltl.BinaryOperator, tuple[bool, ...]] = {
 """Whether an operation can only become true when its operand does; else only when it does not."""
 
 
-def _in_order(cause: ltl.Unary | ltl.Binary, effect: ltl.Unary | ltl.Binary) -> bool:
+def _in_order(
+    cause: ltl.Unary | ltl.Binary, effect: ltl.Unary | ltl.Binary, known: Implied
+) -> bool:
     pairs = [
         (part.operand,) if isinstance(part, ltl.Unary) else (part.left, part.right)
         for part in (cause, effect)
@@ -141,7 +171,7 @@ def _in_order(cause: ltl.Unary | ltl.Binary, effect: ltl.Unary | ltl.Binary) -> 
     if grows is None:
         return False
     operands = zip(grows, *pairs, strict=True)
-    if not all(_implies(*((x, y) if up else (y, x))) for up, x, y in operands):
+    if not all(_implies(*((x, y) if up else (y, x)), known) for up, x, y in operands):
         return False
     return cause.bound == effect.bound or _is_looser(cause, effect)
 
@@ -151,7 +181,7 @@ def _is_looser(cause: ltl.Unary | ltl.Binary, effect: ltl.Unary | ltl.Binary) ->
     own, other = cause.bound, effect.bound
     if own is None or other is None or (own.low, own.unit) != (other.low, other.unit):
         return False
-    highs = [Fraction(10**9) if bound.high is None else bound.high for bound in (own, other)]
+    highs = [inf if bound.high is None else bound.high for bound in (own, other)]
     if cause.operator is ltl.UnaryOperator.HISTORICALLY:
         return highs[1] <= highs[0]
     loose = (ltl.UnaryOperator.ONCE, ltl.BinaryOperator.SINCE)
@@ -166,17 +196,38 @@ def _is_within(first: ltl.Relation, second: ltl.Relation, room: Fraction) -> boo
     return room > 0 or (room == 0 and (first == second or len(first) == 1))
 
 
+def _compared(comparison: ltl.Comparison | ltl.Calculated) -> ltl.NumberSum:
+    """The number that is compared with 0."""
+    if isinstance(comparison, ltl.Calculated):
+        return comparison.number
+    return ltl.NumberSum(comparison.terms, -comparison.limit)
+
+
 def _ends(number: ltl.NumberSum, other: ltl.NumberSum) -> Fraction | None:
-    """A number that has the sign of ``other - number``, whatever their parts are; else None."""
+    """A number that has the sign of ``other - number`` if no quantity is negative; else None."""
     parts: dict[ltl.Term | ltl.Operation, Fraction] = {}
     for sign, own in ((1, other), (-1, number)):
         for factor, part in own.parts:
             share, rest = _factored(part)
             parts[rest] = parts.get(rest, Fraction(0)) + sign * factor * share
-    signs = {-1 if value < 0 else 1 for value in parts.values() if value}
+    differing = {part: factor for part, factor in parts.items() if factor}
+    if not all(map(_is_nonnegative, differing)):
+        return None
+    signs = {-1 if factor < 0 else 1 for factor in differing.values()}
     constant = other.constant - number.constant
     signs |= {-1 if constant < 0 else 1} if constant else set()
     return Fraction(signs.pop() if signs else 0) if len(signs) < 2 else None
+
+
+def _is_nonnegative(part: ltl.Term | ltl.Operation) -> bool:
+    """Whether a part cannot be negative if no quantity is: no difference is a factor of it."""
+    if not isinstance(part, ltl.Operation) or (part.operator == "*" and part.left == part.right):
+        return True
+    return all(
+        side.constant >= 0
+        and all(factor >= 0 and _is_nonnegative(each) for factor, each in side.parts)
+        for side in (part.left, part.right)
+    )
 
 
 def _factored(part: ltl.Term | ltl.Operation) -> tuple[Fraction, ltl.Term | ltl.Operation]:
@@ -186,7 +237,7 @@ def _factored(part: ltl.Term | ltl.Operation) -> tuple[Fraction, ltl.Term | ltl.
     share = Fraction(1)
     sides: list[ltl.NumberSum] = []
     for side in (part.left, part.right):
-        lead = side.parts[0][0]
+        lead = side.parts[0][0] if side.parts else side.constant or Fraction(1)
         share = share * lead if part.operator == "*" or not sides else share / lead
         own = tuple([(factor / lead, each) for factor, each in side.parts])
         sides.append(ltl.NumberSum(own, side.constant / lead))

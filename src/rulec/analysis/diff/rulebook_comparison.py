@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from rulec.analysis.believable_states import declarations_read
-from rulec.analysis.diff.meanings_apart import told_apart
+from rulec.analysis.diff.meanings_apart import with_words_apart
 from rulec.analysis.diff.rule_comparison import RuleComparison, RuleRelation, compare
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory, ConstantKind
 from rulec.analysis.shared_compilation import at_one_step, compile_shared
@@ -212,7 +212,7 @@ def diff_rulebooks(
 
     Raises RulecError if a rule cannot be compiled.
     """
-    first, second = told_apart(*with_distinct_names((first, second)))
+    first, second = with_words_apart(*with_distinct_names((first, second)))
     ours, theirs = (rules_matching(book, patterns) for book in (first, second))
     others = {rule.name: rule for rule in second.rules}
     partners = {name: theirs[name] for name in theirs if name in ours and name not in paired}

@@ -49,27 +49,16 @@ _BLOCKS = 16
 """Number of Ray's tasks per process: fewer leave some processes idle, more add overhead."""
 
 
-def local_engine() -> Engine:
-    """The engine that needs no further package."""
-    return judged_locally
-
-
 def judged_locally(
     worker: UnitWorker, units: Sequence[WorkUnit], jobs: Jobs
 ) -> Iterator[FleetTally]:
     """The tally of each unit; a unit whose process is killed twice is only listed as lost."""
-    for unit, result in in_order(_Work(worker), units, jobs):
+    for unit, result in in_order(partial(_judged, worker), units, jobs):
         yield FleetTally(lost=[unit.path]) if isinstance(result, LostTask) else result
 
 
-class _Work:
-    """The work of a process on one unit."""
-
-    def __init__(self, worker: UnitWorker) -> None:
-        self._worker = worker
-
-    def __call__(self, unit: WorkUnit) -> Iterator[FleetTally]:
-        yield self._worker.judged(unit)
+def _judged(worker: UnitWorker, unit: WorkUnit) -> Iterator[FleetTally]:
+    yield worker.judged(unit)
 
 
 def _tallies(sent: bytes, units: Any) -> dict[str, list[bytes]]:
@@ -161,7 +150,7 @@ def _judged_by_spark(
 EngineName = Literal["local", "ray", "spark"]
 
 _ENGINES: Mapping[EngineName, Callable[[], Engine]] = {
-    "local": local_engine,
+    "local": lambda: judged_locally,
     "ray": ray_engine,
     "spark": spark_engine,
 }

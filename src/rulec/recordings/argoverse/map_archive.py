@@ -7,10 +7,12 @@ pedestrian crossings as two edges along which people walk. Both data sets have t
 
 from __future__ import annotations
 
+from codecs import BOM_UTF8
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
+from typing import TypeVar
 
 import msgspec
 import numpy as np
@@ -19,11 +21,29 @@ from numpy.typing import NDArray
 
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.file_values import LARGEST, short
-from rulec.recordings.encodings.typed_json import read_json
 from rulec.recordings.lanes.lanes_along import with_sound_links
 from rulec.recordings.polylines import ends_apart, line_length, paired, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points
 from rulec.recordings.road_map import RoadMap, crosswalk
+
+T = TypeVar("T")
+
+
+def read_json(path: Path, form: FileFormat, kind: type[T]) -> T:
+    """The content of a file as a value of a type, which bounds its depth.
+
+    Raises RulecError R0610 for a file that is too large for the format, broken, or of other
+    content, with the place as a path of keys or a byte; R0701 if it cannot be opened.
+    """
+    data = form.content(path)
+    try:
+        return msgspec.json.decode(data.removeprefix(BOM_UTF8), type=kind)
+    except (msgspec.DecodeError, UnicodeDecodeError, ValueError) as reason:
+        words = "".join(x if x.isprintable() else "?" for x in str(reason)[:200])
+        raise form.refused(path, words) from None
+    except RecursionError:
+        raise form.refused(path, "its parts are too deep in each other") from None
+
 
 MAP_ARCHIVE = FileFormat(
     "a map of Argoverse 2",

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from glob import escape
 from pathlib import Path
 
 from rulec.diagnostics import SourceLocation, first_of
 from rulec.recordings.adjacency import side_by_lanes
 from rulec.recordings.commonroad.countries import country_of, side_in
-from rulec.recordings.encodings.wire_format import WireFile
+from rulec.recordings.encodings.wire_format import Fields, WireFile
 from rulec.recordings.map_files import MAP_FORMATS, read_map
-from rulec.recordings.osi.environment import weather_of
 from rulec.recordings.osi.lane_messages import check_size, read_boundaries, read_lanes
 from rulec.recordings.osi.lane_network import LaneNetwork, lane_network
 from rulec.recordings.osi.light_heads import with_lights
@@ -21,14 +20,53 @@ from rulec.recordings.osi.logical_lanes import (
     logical_lanes,
     with_logical,
 )
+from rulec.recordings.osi.message_fields import part
 from rulec.recordings.osi.message_times import TimeGrid, time_grid
 from rulec.recordings.osi.moving_objects import participants, standing
 from rulec.recordings.osi.signs_and_marks import with_crossings, with_signs, with_stop_lines
 from rulec.recordings.osi.trace_content import TraceContent, read_content
 from rulec.recordings.osi.trace_file import OSI
-from rulec.recordings.recording import Lanelet, Participant, Recording, Side, is_lane
+from rulec.recordings.recording import Lanelet, Participant, Recording, Side, Weather, is_lane
 from rulec.recordings.recording_format import Glance
 from rulec.recordings.recording_messages import NET_MISSING
+
+_RAIN = frozenset({"light", "moderate", "heavy", "very_heavy", "extreme"})
+_FALLS: Mapping[str, bool] = {"none": False, "very_light": True, **dict.fromkeys(_RAIN, True)}
+_DARK: Mapping[str, bool] = {
+    **dict.fromkeys(("level1", "level2", "level3", "level4"), True),
+    **dict.fromkeys(("level8", "level9"), False),
+}
+"""Ambient light level -> dark: true below 10 lx, false from 1,000 lx.
+
+Between, it may be overcast.
+"""
+
+_FAR = frozenset({"excellent", "good", "moderate", "poor", "mist"})
+_FAR_M = 1000.0
+"""The standard calls it fog below 1000 m of visibility; lighter haze has levels of its own."""
+
+
+def weather_of(environment: Fields, lanes: Iterable[Fields]) -> Weather:
+    """The weather: wet if it rains or any lane has water on it, icy if any lane has ice.
+
+    It is dry, or free of ice, only if all lanes with surface data say so.
+    """
+    roads = [part(lane, "classification", "road_condition") for lane in lanes]
+    water = [road["surface_water_film"] for road in roads if "surface_water_film" in road]
+    ice = [road["surface_ice"] for road in roads if "surface_ice" in road]
+    rain = environment.get("precipitation", "unknown")
+    wet = any(film > 0 for film in water) if water else None
+    if rain in _RAIN:
+        wet = True
+    icy = any(part > 0 for part in ice) if ice else None
+    return Weather(
+        wet,
+        icy,
+        _FAR_M if environment.get("fog") in _FAR else None,
+        raining=_FALLS.get(rain),
+        night=_DARK.get(environment.get("ambient_illumination", "unknown")),
+    )
+
 
 _NAMED = 5
 

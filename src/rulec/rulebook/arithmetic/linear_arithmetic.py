@@ -12,10 +12,30 @@ from fractions import Fraction
 from itertools import islice, product
 
 from rulec.logic import formula as ltl
-from rulec.logic.free_names import number_sum
+from rulec.logic.free_names import number_sum, renamed_number, terms_of, variables_of
 from rulec.logic.linear_comparison import comparison
-from rulec.rulebook.arithmetic.calculations import calculated, multiplication
+from rulec.logic.printing import sum_text
 from rulec.vocabulary.dimensions import NUMBER, Dimension, Unit
+
+
+def multiplication(left: ltl.NumberSum, right: ltl.NumberSum) -> ltl.Operation:
+    """The product of two numbers, the same in either order."""
+    first, second = sorted((left, right), key=sum_text)
+    return ltl.Operation("*", first, second)
+
+
+def calculated(number: ltl.NumberSum, relation: ltl.Relation, text: str) -> ltl.Calculated:
+    """The comparison of a number with 0, which a rulebook spells like this."""
+    variables = tuple(dict.fromkeys(_variables(number)))
+    places = {name: f"x{place}" for place, name in enumerate(variables, 1)}
+    name = ltl.with_arguments(text, places)
+    return ltl.Calculated(name, variables, number=renamed_number(number, places), relation=relation)
+
+
+def _variables(number: ltl.NumberSum) -> Iterator[str]:
+    for term in terms_of(number):
+        yield from variables_of(term)
+
 
 MOST_CASES = 64
 """The most cases in one comparison; more could not be checked by reading."""
@@ -76,11 +96,6 @@ class NumberByCases:
     def is_constant(self) -> bool:
         """Whether the number is the same in all states."""
         return len(self.cases) == 1 and not self.cases[0][1].coefficients
-
-    @property
-    def varies(self) -> bool:
-        """Whether the number depends on quantities or counts, not only on conditions."""
-        return any(linear.coefficients for _, linear in self.cases)
 
     @property
     def is_bare(self) -> bool:
