@@ -45,8 +45,8 @@ def test_a_defined_word(files, capsys):
     assert status == 0
     assert text.splitlines()[1:] == [
         "  near of v: 0 to 0.5 s: yes",
-        "  near of v: 1 to 1 s: not known",
-        "  near of v: 1.5 to 1.5 s: no",
+        "  near of v: 1 s: not known",
+        "  near of v: 1.5 s: no",
         "  near of w: 0 to 1.5 s: no",
     ]
 
@@ -56,8 +56,8 @@ def test_a_number_and_a_value(files, capsys):
     lines = said(capsys, "explain", "speed", trace, "-r", book)[1].splitlines()
     assert lines[1:] == [
         "  0 to 0.5 s: 10 to 12 km/h, each known within 2 km/h",
-        "  1 to 1 s: not known",
-        "  1.5 to 1.5 s: 20 to 20 km/h",
+        "  1 s: not known",
+        "  1.5 s: 20 km/h",
     ]
     lines = said(capsys, "explain", "there", trace, "-r", book)[1].splitlines()
     assert lines[1:] == ["  0 to 0.5 s: here", "  1 to 1.5 s: there"]
@@ -75,3 +75,19 @@ def test_no_such_word(files, capsys):
     status, text = said(capsys, "explain", "nears", trace, "-r", book)
     assert status == 2
     assert "nears" in text
+
+
+@pytest.mark.parametrize(
+    ("file", "problem"),
+    [
+        ("none.xml", "no such file or directory"),
+        ("no*.xml", "no file is called like that"),
+        (".", "there is no recorded traffic in this folder"),
+    ],
+)
+def test_files_that_are_not_there(file, problem, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    status, text = said(capsys, "explain", "gap", file)
+    assert status == 2
+    assert problem in text
+    assert "vocabulary" not in text

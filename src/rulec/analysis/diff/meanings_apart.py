@@ -45,10 +45,7 @@ def with_words_apart(first: Rulebook, second: Rulebook) -> tuple[Rulebook, Ruleb
     # In this order a word comes after those that it is defined by
     for name in (name for name in first.vocabulary.meanings if name in different):
         meanings = [book.vocabulary.meanings[name] for book in (first, second)]
-        names = [
-            _named(name, book.name, own)
-            for book, own in zip((first, second), meanings, strict=True)
-        ]
+        names = [_named(name, book) for book in (first, second)]
         own, theirs = (
             _with_names(_of_places(each), {word: both[side] for word, both in apart.items()})
             for side, each in enumerate(meanings)
@@ -70,9 +67,10 @@ def with_words_apart(first: Rulebook, second: Rulebook) -> tuple[Rulebook, Ruleb
     return first, second
 
 
-def _named(name: str, book: str, meaning: Meaning) -> str:
-    places = ", ".join(f"x{place}" for place in range(1, len(meaning.variables) + 1))
-    return f"{name}({places}) in {book}" if places else f"{name} in {book}"
+def _named(name: str, book: Rulebook) -> str:
+    n_objects = len(book.vocabulary.declarations[name].parameters)
+    places = ", ".join(f"x{place}" for place in range(1, n_objects + 1))
+    return f"{name}({places}) in {book.name}" if places else f"{name} in {book.name}"
 
 
 def _of_places(meaning: Meaning) -> ltl.Formula:

@@ -72,10 +72,14 @@ def _text_of(values: Sequence[Any], declared: Declaration) -> str:
         low, high = min(own[0] for own in ends), max(own[1] for own in ends)
         wide = max(own[1] - own[0] for own in ends)
         known = f", each known within {wide:.4g} {declared.unit}" if wide else ""
-        return f"{low:.6g} to {high:.6g} {declared.unit}{known}"
+        return f"{_range(f'{low:.6g}', f'{high:.6g}')} {declared.unit}{known}"
     if isinstance(value, OneOf):
         return " or ".join(sorted(value.values))
     return str(value) if isinstance(declared, Enumeration) else "yes" if value else "no"
+
+
+def _range(low: str, high: str) -> str:
+    return low if low == high else f"{low} to {high}"
 
 
 class ValueLine(MomentLine, frozen=True, kw_only=True):
@@ -100,7 +104,7 @@ def lines(drive: DriveMoments, name: str, width: int) -> Iterator[str]:
     usual = max(dict.fromkeys(alone), key=alone.count) if len(alone) > 1 else None
     for span in (x for own in groups if len(own) > 1 or own[0].value != usual for x in own):
         about = "".join(f"{word} {item}: " for word, item in span.objects.items())
-        when = f"{drive.time_s(span.first):g} to {drive.time_s(span.last):g} s"
+        when = _range(*(f"{drive.time_s(state):g}" for state in (span.first, span.last))) + " s"
         yield from broken(visible(f"  {about}{when}: {span.value}"), width, later="    ")
     if usual is not None:
         yield f"  {usual} for {counted(alone.count(usual), 'other')}, as long as they are there"

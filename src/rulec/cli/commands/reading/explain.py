@@ -30,6 +30,7 @@ from rulec.cli.verb_table import FORMER, VERBS
 from rulec.diagnostics import RulecError, any_of, first_of, nearest_name
 from rulec.diagnostics.code import Code
 from rulec.logic.formula import Atom
+from rulec.recordings.recording_inputs import STANDARD_INPUT, input_files
 from rulec.report.findings import code_registry
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_remark
@@ -83,7 +84,7 @@ def command(
     """
     if every == bool(names):
         raise click.UsageError("give a code or a word, such as `R0104` or `gap`, or --all")
-    if len(names) > 1 and any(map(os.path.isfile, names[1:])):
+    if any(map(_is_of_files, names[1:])):
         found = partial(moments_of, egos=egos, drives=drives, recorded=recorded)
         return _shown_values(names, rulebook or "", to, found)
     if egos or rulebook:
@@ -97,11 +98,19 @@ def command(
     return ExitStatus.after(answered=not unknown, failed=False)
 
 
+def _is_of_files(name: str) -> bool:
+    """Whether a name is one of files, which codes and words are not."""
+    return name == STANDARD_INPUT or any(map(name.count, "./*?[")) or os.path.lexists(name)
+
+
 def _shown_values(
     names: tuple[str, ...], rulebook: str, to: Output, found: Callable[..., Iterator[Any]]
 ) -> int:
     """Show the values of a word in files."""
-    word, complaints, complete = names[0], Complaints(), True
+    word, complaints, inputs = names[0], Complaints(), input_files(names[1:])
+    for problem in inputs.problems:
+        complaints.add(problem)
+    complete = not inputs.problems
     query = lazy.read_query("true", rulebook=rulebook, search_path=search_path())
     known = {**query.vocabulary.enumeration_of, **query.vocabulary.declarations}
     if word not in known:
@@ -112,7 +121,7 @@ def _shown_values(
     lines_of = lazy.word_values.json_lines if to.form == "json" else as_text
     with answer_lines(to) as write:
         look = partial(lazy.word_values.word_spans, name=word)
-        for drive in found(query, names[1:], look=look):
+        for drive in found(query, inputs.paths, look=look):
             if isinstance(drive, RulecError):
                 complete = False
                 complaints.add(drive)
