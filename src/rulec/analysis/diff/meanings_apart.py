@@ -6,7 +6,6 @@ The same expression with another parameter is ordered by it, if no number in it 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from fractions import Fraction
 from math import inf
@@ -18,7 +17,7 @@ from rulec.rulebook.rulebook_model import Axiom, Rulebook, Variable
 from rulec.vocabulary import Signal
 from rulec.vocabulary.vocabulary_model import Meaning
 
-Implied: TypeAlias = AbstractSet[tuple[str, str]]
+Implied: TypeAlias = set[tuple[str, str]]
 """Words, and words that hold whenever these do."""
 
 
@@ -169,9 +168,9 @@ def _in_order(
     if grows is None:
         return False
     operands = zip(grows, *pairs, strict=True)
-    if not all(_implies(*((x, y) if up else (y, x)), known) for up, x, y in operands):
-        return False
-    return cause.bound == effect.bound or _is_looser(cause, effect)
+    return all(_implies(*((x, y) if up else (y, x)), known) for up, x, y in operands) and (
+        cause.bound == effect.bound or _is_looser(cause, effect)
+    )
 
 
 def _is_looser(cause: ltl.Unary | ltl.Binary, effect: ltl.Unary | ltl.Binary) -> bool:

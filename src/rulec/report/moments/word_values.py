@@ -23,8 +23,6 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 from rulec.vocabulary.vocabulary_model import choices
 
-_NOT_KNOWN = "not known"
-
 
 @dataclass(frozen=True, slots=True)
 class ValueSpan(Moment):
@@ -66,7 +64,7 @@ def _text_of(values: Sequence[Any], declared: Declaration) -> str:
     """The text of equal values, or of the range of numbers."""
     value = values[0]
     if value is None or value is UNKNOWN:
-        return _NOT_KNOWN
+        return "not known"
     if isinstance(declared, Quantity):
         ends = [(x.low, x.high) if isinstance(x, Interval) else (x, x) for x in values]
         low, high = min(own[0] for own in ends), max(own[1] for own in ends)

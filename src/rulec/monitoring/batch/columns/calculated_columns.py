@@ -43,7 +43,10 @@ def calculated_truth(asked: ltl.Calculated, parts: Mapping[ltl.Term, Number], sh
     ready = comparison_sides((), asked.relation, Fraction(0))
     least, most = (np.sign(end).astype(np.intp) + 1 for end in (low, high))
     sure, possible = ready.every[least, most], ready.some[least, most]
-    for place in (close & ~unknown).nonzero()[0].tolist():
+    # Floats do not tell the difference of two numbers beyond them either
+    given = [np.isfinite(end) for part in parts.values() for end in (part.low, part.high)]
+    is_given = np.broadcast_to(np.logical_and.reduce(np.broadcast_arrays(*given)).ravel(), shape)
+    for place in np.where(unknown, is_given, close).nonzero()[0].tolist():
         own = {term: _at(number, place) for term, number in parts.items()}
         surely = surely_compares(asked, own.__getitem__)
         sure[place], possible[place] = surely is True, surely is not False
