@@ -18,6 +18,7 @@ from rulec.trace.vocabulary_projection import RECORDED_UNITS, UNTOLD_VALUES
 from rulec.vocabulary import Quantity
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import recording, straight, vehicle
+from support.signal_arrays import bounded
 
 DOCS = Path(__file__).parents[2] / "docs"
 EXTRACTION = Path(__file__).parents[2] / "src" / "rulec" / "extraction"
@@ -108,7 +109,7 @@ def test_every_word_has_its_tolerance_its_duration_and_what_may_be_wrong():
 def test_numbers_that_are_intervals_are_those_that_the_page_says():
     cars = [vehicle(k, {s: (9.0 + 11 * k + 5 * s, 0) for s in range(4)}) for k in (7, 8)]
     context = context_of(recording([straight(1, 0, 99, signs=frozenset({"STOP"}))], cars))
-    told = {name for signals_of in SIGNALS for name in signals_of(context).bounds}
+    told = {name for signals_of in SIGNALS for name in bounded(signals_of(context))}
     rows = rows_of_what_may_be_wrong()
     said = {word for own, cells in rows for word in own if cells[0] == "interval"}
     assert told == said

@@ -13,6 +13,7 @@ from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording
 from support.generators.random_recordings import STEP_S, lanes, scenes
+from support.signal_arrays import bounds_of, said, unknown_in, values_of
 
 PLACE_M = 0.05
 """Places of a recording made by hand are as good."""
@@ -28,7 +29,7 @@ def lane_polygons(found):
 
 def shadow(polygon, axis):
     """What a polygon covers of an axis."""
-    low, high = polygon.bounds[axis], polygon.bounds[axis + 2]
+    low, high = bounds_of(polygon, axis), polygon.bounds[axis + 2]
     return shapely.LineString([(low, 0), (high, 0)])
 
 
@@ -39,8 +40,8 @@ def seen_from(body, ego, lanes):
         station = "behind" if ego.centroid.x < body.centroid.x else "in_front_of"
     else:
         station = "beside"
-    length = body.bounds[2] - body.bounds[0]
-    width = body.bounds[3] - body.bounds[1]
+    length = bounds_of(body, 2) - bounds_of(body, 0)
+    width = bounds_of(body, 3) - bounds_of(body, 1)
     enough = min(USUAL.touching_m, width / 2) * length
     touched = [lane for lane in lanes if lane.intersection(body).area > enough]
     wide = shapely.union_all(touched) if touched else body
@@ -49,22 +50,26 @@ def seen_from(body, ego, lanes):
         wide = body
     if in_the_way(min(lanes, key=ego.centroid.distance), body, ego):
         return station, "same_lane"
-    if ego.centroid.y <= wide.bounds[1]:
+    if ego.centroid.y <= bounds_of(wide, 1):
         return station, "right_of"
-    return station, "left_of" if ego.centroid.y >= wide.bounds[3] else "same_lane"
+    return station, "left_of" if ego.centroid.y >= bounds_of(wide, 3) else "same_lane"
 
 
 def in_the_way(lane, body, ego):
     """Does a body overlap ego's across the road, and ego's lane at all?"""
-    overlap = min(body.bounds[3], ego.bounds[3]) - max(body.bounds[1], ego.bounds[1])
-    inside = min(body.bounds[3], lane.bounds[3]) - max(body.bounds[1], lane.bounds[1])
+    overlap = min(bounds_of(body, 3), bounds_of(ego, 3)) - max(
+        bounds_of(body, 1), bounds_of(ego, 1)
+    )
+    inside = min(bounds_of(body, 3), bounds_of(lane, 3)) - max(
+        bounds_of(body, 1), bounds_of(lane, 1)
+    )
     return overlap > USUAL.touching_m and inside > 0
 
 
 def covers(lane, body):
     """Does a body keep within a lane, but for so little that it is in no other?"""
-    low, high = lane.bounds[1] - USUAL.touching_m, lane.bounds[3] + USUAL.touching_m
-    return low <= body.bounds[1] and body.bounds[3] <= high
+    low, high = bounds_of(lane, 1) - USUAL.touching_m, bounds_of(lane, 3) + USUAL.touching_m
+    return low <= bounds_of(body, 1) and bounds_of(body, 3) <= high
 
 
 def bounds(value):
@@ -117,8 +122,8 @@ def sides(*ys, own_y=0.0, name="USA_Peach-1", width=2.0):
     others = [steady(20 + k, 30, y, width=width) for k, y in enumerate(ys)]
     found = replace(recording(lanes(2), [steady(7, 0, own_y), *others]), name=name)
     signals = participant_signals(context_of(found))
-    known = ~signals.unknown["lateral"][:, 0]
-    told = signals.values("lateral")[:, 0].tolist()
+    known = ~unknown_in(signals, "lateral")[:, 0]
+    told = said(signals, "lateral")[:, 0].tolist()
     return [side if sure else None for side, sure in zip(told, known.tolist(), strict=True)]
 
 
@@ -164,7 +169,7 @@ def test_a_map_that_lies_off_the_tracks_does_not_tell_lanes():
         context = context_of(found)
         signals = participant_signals(context)
         row = [body.id for body in context.tracks.participants].index("8")
-        return context.map_offset_m[0], bool(signals.unknown["lateral"][row, 0])
+        return context.map_offset_m[0], bool(unknown_in(signals, "lateral")[row, 0])
 
     offset, unknown = told(*cars, steady(40, 80, 4.8))
     assert offset == pytest.approx(0.8)
@@ -185,8 +190,8 @@ def test_one_that_stands_and_leaves_room_is_not_followed_too_closely():
         cycle = steady(7, 0, y, speed=6.0, width=0.6, kind="bicycle")
         found = recording(lanes(1), [cycle, steady(8, 5, 0.5, speed=0.0)])
         signals = participant_signals(context_of(replace(found, name=EXACT)))
-        assert signals.values("lateral")[0, 0] == "same_lane"
-        return bool(signals.about["safe_gap"][0, 0])
+        assert said(signals, "lateral")[0, 0] == "same_lane"
+        return bool(values_of(signals, "safe_gap")[0, 0])
 
     assert safe(-1.4)
     assert not safe(-1.0)

@@ -12,6 +12,7 @@ import pytest
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight
+from support.signal_arrays import unknown_in, values_of
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 STEP_S = 0.25
@@ -58,8 +59,8 @@ def both(found, word, sides=("left", "right")):
     states = []
     for side in sides:
         names = f"conflict_from_{side}", word
-        flags = [found.world[name] & ~found.unknown[name] for name in names]
-        maybe = [found.world[name] | found.unknown[name] for name in names]
+        flags = [values_of(found, name) & ~unknown_in(found, name) for name in names]
+        maybe = [values_of(found, name) | unknown_in(found, name) for name in names]
         states.append((np.all(flags, axis=0).any(), np.all(maybe, axis=0).any()))
     sure, perhaps = np.any(states, axis=0)
     return "T" if sure else "?" if perhaps else "F"
@@ -67,8 +68,8 @@ def both(found, word, sides=("left", "right")):
 
 def test_who_comes_towards_ego_first_did_not_come_first_from_a_side():
     found = told(ahead=FIRST, left=LATER)
-    assert found.world["in_way_of_oncoming"].any()
-    assert found.world["conflict_from_left"].any()
+    assert values_of(found, "in_way_of_oncoming").any()
+    assert values_of(found, "conflict_from_left").any()
     assert both(found, "other_arrived_first") == "F"
 
 
@@ -80,8 +81,8 @@ def test_who_came_first_from_a_side_is_told_whoever_else_comes():
 
 
 def test_who_comes_towards_ego_is_told_of_where_nobody_comes_from_a_side():
-    assert told(ahead=FIRST).world["other_arrived_first"].any()
-    assert not told(ahead=LATER).world["other_arrived_first"].any()
+    assert values_of(told(ahead=FIRST), "other_arrived_first").any()
+    assert not values_of(told(ahead=LATER), "other_arrived_first").any()
 
 
 @pytest.mark.parametrize(

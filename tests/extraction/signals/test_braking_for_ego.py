@@ -8,6 +8,7 @@ import pytest
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import unknown_in, values_of
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 ROADS = [
@@ -33,7 +34,7 @@ def from_the_right(y, roads=ROADS, kind="car", word="conflict_from_right"):
     found = recording(roads, [ego, other], step_s=STEP_S)
     found = replace(found, complete=frozenset({"YIELD"}))
     told = priority_signals(context_of(found, route=("1", "2", "3")))
-    return "?" if told.unknown[word].any() else "FT"[int(told.world[word].any())]
+    return "?" if unknown_in(told, word).any() else "FT"[int(values_of(told, word).any())]
 
 
 def driven(begin, times, speeds):
@@ -99,8 +100,8 @@ def test_one_that_is_nearly_there_at_the_end_may_come_at_once():
     other = vehicle(8, {k: (0, -31.0 + k) for k in steps}, speed=10, heading=np.pi / 2)
     found = replace(recording(WIDE, [ego, other], step_s=STEP_S), complete=frozenset({"YIELD"}))
     told = priority_signals(context_of(found, route=("1", "2", "3")))
-    assert told.unknown["conflict_from_right"].any()
-    assert not told.world["conflict_from_right"].any()
+    assert unknown_in(told, "conflict_from_right").any()
+    assert not values_of(told, "conflict_from_right").any()
 
 
 @pytest.mark.parametrize(("begin", "conflict"), [(-4.5, "T"), (-12.0, "F")])

@@ -11,6 +11,7 @@ import pytest
 from rulec.extraction.signals.conduct.called_signals import called_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import unknown_in, values_of
 
 STEPS = 40
 
@@ -25,8 +26,8 @@ def lanes():
 def told(word, road, *bodies):
     """The word's values, with "?" where it is unknown."""
     signals = called_signals(context_of(recording(road, bodies, step_s=0.5)))
-    column = signals.world[word]
-    unknown = signals.unknown.get(word, np.zeros(column.shape, dtype=bool))
+    column = values_of(signals, word)
+    unknown = unknown_in(signals, word)
     return np.where(unknown, "?", column).tolist()
 
 

@@ -19,6 +19,7 @@ from rulec.recordings.recording import HEADINGS, Light, Weather
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
+from support.signal_arrays import said, unknown_in, values_of
 
 SIMULATED = ("arrivals", "light", "YIELD")
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
@@ -30,8 +31,8 @@ def told(group, word, road, *bodies, side="right", complete=(), route=("1",), **
     if side == "left":
         found = mirrored_recording(found)
     signals = group(context_of(found, route, side, **thresholds))
-    column = signals.values(word)
-    unknown = signals.unknown.get(word, np.zeros(column.shape, dtype=bool))
+    column = said(signals, word)
+    unknown = unknown_in(signals, word)
     column, unknown = (x[0] if x.ndim == 2 else x for x in (column, unknown))
     letters = {"True": "T", "False": "F", "own_side": "F", "oncoming_side": "T"}
     return "".join(
@@ -82,8 +83,8 @@ def test_who_comes_back_nowhere_does_not_drive_backwards(xs, expected):
     found = recording(two_way(), [replace(body, states=states)])
     found = replace(found, name="USA_Lanker-1", complete=frozenset({HEADINGS}))
     signals = manoeuvre_signals(context_of(found))
-    values = np.where(signals.values("reversing"), "T", "F")
-    unknown = signals.unknown["reversing"]
+    values = np.where(said(signals, "reversing"), "T", "F")
+    unknown = unknown_in(signals, "reversing")
     assert "".join(np.where(unknown, "?", values).ravel().tolist()) == expected
 
 
@@ -757,9 +758,9 @@ def test_the_brightest_of_ego_s_lamps(lit, night, expected):
     ego = replace(steady(7, 50, 0), shows=BEAMS, lamps={k: frozenset(lit) for k in range(3)})
     found = replace(recording(two_way(), [ego]), weather=Weather(night=night))
     signals = lamp_signals(context_of(found))
-    assert signals.unknown["headlamps"].tolist() == [*([expected is None] * 3), True]
-    assert expected in (None, signals.values("headlamps")[0])
-    assert signals.world["rear_fog_lamps"].tolist() == [*(["rear_fog_lamp" in lit] * 3), False]
+    assert unknown_in(signals, "headlamps").tolist() == [*([expected is None] * 3), True]
+    assert expected in (None, said(signals, "headlamps")[0])
+    assert values_of(signals, "rear_fog_lamps").tolist() == [*(["rear_fog_lamp" in lit] * 3), False]
     # Of the others the file says nothing
     assert signals.world.keys() == {"headlamps", "rear_fog_lamps", "ego_on_call"}
 

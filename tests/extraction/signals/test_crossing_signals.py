@@ -12,6 +12,7 @@ from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
+from support.signal_arrays import possible_in, said, unknown_in, values_of
 
 ZEBRA = lanelet(9, [(60, -8), (60, 8)], width=4, types=frozenset({"crosswalk"}))
 
@@ -22,7 +23,7 @@ def use(x, y, along=0.0, across=0.0, **thresholds):
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     ego = steady(7, 20, 0, steps=2)
     context = context_of(recording([*lanes(1), ZEBRA], [ego, walker]), **thresholds)
-    return str(crossing_signals(context).values("crossing_use")[0, 0])
+    return str(said(crossing_signals(context), "crossing_use")[0, 0])
 
 
 @pytest.mark.parametrize(
@@ -60,7 +61,7 @@ def test_who_walks_along_the_far_edge_of_the_road_does_not_cross_it(along, acros
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     found = recording([*road, ZEBRA], [steady(7, 20, 0, steps=2), walker])
     signals = crossing_signals(context_of(found, ("1",)))
-    assert str(signals.values("crossing_use")[0, 0]) == expected
+    assert str(said(signals, "crossing_use")[0, 0]) == expected
 
 
 @pytest.mark.parametrize(
@@ -82,7 +83,7 @@ def test_one_comes_to_the_lanes_that_there_are_at_the_crossing(y, across, expect
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     found = recording([*road, ZEBRA], [steady(7, 20, 0, steps=2), walker])
     signals = crossing_signals(context_of(found, ("1", "2")))
-    assert str(signals.values("crossing_use")[0, 0]) == expected
+    assert str(said(signals, "crossing_use")[0, 0]) == expected
 
 
 @pytest.mark.parametrize(
@@ -102,9 +103,9 @@ def test_who_has_crossed_egos_lane_is_let_across(y, across, expected):
     beside = steady(9, 50, 4, speed=0, steps=2)
     found = recording([*lanes(2), ZEBRA], [steady(7, 20, 0, steps=2), walker, beside])
     signals = crossing_signals(context_of(found))
-    assert str(signals.values("crossing_use")[0, 0]) == expected
+    assert str(said(signals, "crossing_use")[0, 0]) == expected
     # Whoever stands in the next lane stands for it all the same
-    assert signals.about["stopped_for_pedestrian"][1, 0]
+    assert values_of(signals, "stopped_for_pedestrian")[1, 0]
 
 
 def test_who_has_crossed_egos_lane_has_done_so_while_it_turns_along_the_road():
@@ -114,7 +115,7 @@ def test_who_has_crossed_egos_lane_has_done_so_while_it_turns_along_the_road():
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     ego = steady(7, 0, 0, speed=2, steps=60, step_s=0.1)
     context = context_of(recording([*lanes(2), ZEBRA], [ego, walker], step_s=0.1))
-    uses = crossing_signals(context).values("crossing_use")[0]
+    uses = said(crossing_signals(context), "crossing_use")[0]
     assert uses[5] == "on_crossing"
     assert set(uses[17:28]) == {"not_crossing"}
     # Who stays there for longer than a second may come back
@@ -132,7 +133,7 @@ def test_who_has_crossed_egos_lane_is_back_in_it_with_its_middle(jumps_to, expec
     walker = vehicle(8, {k: (60, y[k]) for k in range(40)}, "pedestrian", length=0.4, width=0.4)
     ego = steady(7, 0, 0, speed=2, steps=40, step_s=0.1)
     context = context_of(recording([*lanes(2), ZEBRA], [ego, walker], step_s=0.1))
-    uses = crossing_signals(context).values("crossing_use")[0]
+    uses = said(crossing_signals(context), "crossing_use")[0]
     assert uses[5] == "on_crossing"
     assert [uses[k] for k in (19, 21, 25)] == ["not_crossing", expected, "not_crossing"]
 
@@ -146,7 +147,7 @@ def test_who_turns_away_from_those_who_have_crossed_its_lane_is_not_in_their_way
     ego = vehicle(7, {0: (54, 1.6), 1: (54.5, 1.6 + 0.2 * turn)}, heading=-0.6, speed=1.0)
     found = recording([*lanes(2), ZEBRA], [ego, walker])
     signals = crossing_signals(context_of(found))
-    assert str(signals.values("crossing_use")[0, 0]) == expected
+    assert str(said(signals, "crossing_use")[0, 0]) == expected
 
 
 def test_walking_along_the_pavement_is_not_coming_to_cross():
@@ -168,7 +169,7 @@ def stopped(x, speed=0.0, walks=True):
     context = context_of(recording([*lanes(1), ZEBRA], [steady(7, 20, 0, steps=2), *others]))
     signals = crossing_signals(context)
     assert signals.only["stopped_for_pedestrian"].tolist() == [True, False][: len(others)]
-    return bool(signals.about["stopped_for_pedestrian"][0, 0])
+    return bool(values_of(signals, "stopped_for_pedestrian")[0, 0])
 
 
 def test_who_stands_behind_another_one_may_have_stopped_for_that_one():
@@ -177,8 +178,13 @@ def test_who_stands_behind_another_one_may_have_stopped_for_that_one():
     beside = steady(11, 50, 4, speed=0, steps=2)
     bodies = [steady(7, 20, 0, steps=2), first, second, beside, walker]
     signals = crossing_signals(context_of(recording([*lanes(2), ZEBRA], bodies)))
-    assert signals.about["stopped_for_pedestrian"][:, 0].tolist() == [True, True, True, False]
-    unknown = signals.unknown["stopped_for_pedestrian"][:, 0].tolist()
+    assert possible_in(signals, "stopped_for_pedestrian")[:, 0].tolist() == [
+        True,
+        True,
+        True,
+        False,
+    ]
+    unknown = unknown_in(signals, "stopped_for_pedestrian")[:, 0].tolist()
     assert unknown == [False, True, False, False]
 
 
@@ -189,7 +195,7 @@ def test_at_a_crossing_with_lights_who_waits_at_the_kerb_waits_for_these(y, stop
     bodies = [steady(7, 20, 0, steps=2), steady(9, 55, 0, speed=0, steps=2), walker]
     road = recording([*lanes(1), lit], bodies)
     signals = crossing_signals(context_of(replace(road, complete=frozenset({"light"}))))
-    assert bool(signals.about["stopped_for_pedestrian"][0, 0]) == stopped_for
+    assert bool(values_of(signals, "stopped_for_pedestrian")[0, 0]) == stopped_for
 
 
 def test_vehicles_that_stand_before_the_crossing_have_stopped_for_a_pedestrian():
@@ -212,8 +218,8 @@ def over_the_crossing(comes_s, front=30.0, speed=10.0, states=50):
         vehicle(8, walker, "pedestrian", length=0.4, width=0.4),
     ]
     signals = crossing_signals(context_of(recording([*lanes(1), ZEBRA], people, step_s=step_s)))
-    uses = signals.values("crossing_use")[0]
-    return uses, signals.unknown["crossing_use"][0]
+    uses = said(signals, "crossing_use")[0]
+    return uses, unknown_in(signals, "crossing_use")[0]
 
 
 def test_who_comes_when_ego_can_still_wait_is_let_across():
@@ -269,7 +275,7 @@ def side_road(walker, stops_at=None, more=(), x=12.0, **limits):
     found = recording(road, [along(7, line, way), body])
     context = context_of(found, ("1", "2", "3"), **limits)
     found = crossing_signals(context, frozenset({"crosses_side_road"}))
-    columns = [table["crosses_side_road"][0] for table in (found.about, found.unknown)]
+    columns = [of(found, "crosses_side_road")[0] for of in (values_of, unknown_in)]
     told = zip(*columns, strict=True)
     return "".join("?" if dark else "FT"[int(flag)] for flag, dark in told)
 
@@ -383,8 +389,8 @@ def test_who_gets_to_egos_lane_long_after_ego_may_not_have_to_be_let_across():
         ego = steady(7, 54, 0, speed=10.0, steps=2, step_s=0.1)
         road = recording([*lanes(4), ZEBRA], [ego, walker], step_s=0.1)
         found = crossing_signals(context_of(road))
-        assert found.values("crossing_use")[0, 0] == "on_crossing"
-        assert found.unknown["crossing_use"][0, 0] == (not known)
+        assert said(found, "crossing_use")[0, 0] == "on_crossing"
+        assert unknown_in(found, "crossing_use")[0, 0] == (not known)
 
 
 @pytest.mark.parametrize(("y", "expected"), [(-1.7, "not_crossing"), (-1.5, "on_crossing")])

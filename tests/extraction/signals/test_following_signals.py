@@ -15,6 +15,7 @@ from support.builders.drive_contexts import context_of, steady
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import recording, vehicle
 from support.generators.random_recordings import lanes
+from support.signal_arrays import bounds_of
 
 MPS, STEP_S, PLACE_M = 10.0, 0.5, 0.05
 GERMAN = machines("de")
@@ -23,7 +24,9 @@ GERMAN = machines("de")
 def times(*others, steps=4, **thresholds):
     """At least and at most (s), by state, of the first of the others; ego is at x = 0 first."""
     context = context_of(recording(lanes(2), [steady(7, 0, 0, steps=steps), *others]), **thresholds)
-    least, most = map(presence_cells(context).laid, following_signals(context).bounds["ahead_for"])
+    least, most = map(
+        presence_cells(context).laid, bounds_of(following_signals(context), "ahead_for")
+    )
     return least[0].tolist(), most[0].tolist()
 
 
@@ -80,7 +83,7 @@ def test_who_comes_into_sight_later_was_somewhere_before():
     context = context_of(recording(lanes(2), [ego, steady(8, 162, 0, steps=8)]))
     first = int(np.flatnonzero(context.relevant[0])[0])
     assert first > 0
-    assert following_signals(context).bounds["ahead_for"][1][0] == LONGEST_S
+    assert bounds_of(following_signals(context), "ahead_for")[1][0] == LONGEST_S
 
 
 def test_who_stands_beside_or_behind_has_not_been_ahead():

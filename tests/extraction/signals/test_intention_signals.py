@@ -12,6 +12,7 @@ from rulec.extraction.signals.participants.intention_signals import intention_si
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import unknown_in, values_of
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 INDICATORS = {"left_indicator", "right_indicator"}
@@ -43,8 +44,8 @@ def told(word, road, *bodies, side="right", complete=(), route=("1", "2", "5")):
     if side == "left":
         found = mirrored_recording(found)
     signals = intention_signals(context_of(found, route, side))
-    column = signals.world[word] if word in signals.world else signals.about[word]
-    unknown = signals.unknown.get(word, np.zeros(column.shape, dtype=bool))
+    column = values_of(signals, word) if word in signals.world else values_of(signals, word)
+    unknown = unknown_in(signals, word)
     values = np.where(unknown, "?", column).tolist()
     return values[0] if values and isinstance(values[0], list) else values
 

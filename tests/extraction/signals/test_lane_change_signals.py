@@ -10,6 +10,7 @@ from rulec.extraction.signals.ego_signals import ego_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
+from support.signal_arrays import possible_in, said, unknown_in, values_of
 
 # From the right lane to the left one, at 10 m/s; the middle crosses the mark before state 2
 CHANGE = {0: (0, 0), 1: (5, 1.5), 2: (10, 2.5), 3: (15, 4)}
@@ -23,8 +24,8 @@ def changes(*others, body=None, side="right", **thresholds):
 
 
 def test_the_state_in_which_the_lane_is_another_one():
-    assert changes().world["lane_change"].tolist() == [False, False, True, False]
-    assert changes(body=steady(7, 0, 0)).world["lane_change"].tolist() == [False] * 4
+    assert values_of(changes(), "lane_change").tolist() == [False, False, True, False]
+    assert values_of(changes(body=steady(7, 0, 0)), "lane_change").tolist() == [False] * 4
 
 
 @pytest.mark.parametrize(
@@ -42,10 +43,10 @@ def test_who_begins_on_a_mark_may_come_from_either_lane(ys, changed, lane):
     ego = vehicle(7, {k: (5.0 * k, y) for k, y in enumerate(ys)})
     context = context_of(recording(lanes(2), [ego]))
     found = lane_change_signals(context)
-    assert np.flatnonzero(found.unknown["lane_change"]).tolist() == [
+    assert np.flatnonzero(unknown_in(found, "lane_change")).tolist() == [
         k for k, mark in enumerate(changed) if mark == "T"
     ]
-    assert (~ego_signals(context).unknown["lane"]).tolist() == lane
+    assert (~unknown_in(ego_signals(context), "lane")).tolist() == lane
 
 
 @pytest.mark.parametrize(
@@ -62,9 +63,9 @@ def test_who_may_come_into_a_lane_may_be_in_the_way_there(x, unknown, to_left):
     other = steady(8, 10.0 + x - 15.0, 4.0 if to_left else 0.0, speed=15.0)
     route = ("2",) if to_left else ("1",)
     found = lane_change_signals(context_of(recording(lanes(2), [ego, other]), route))
-    assert not found.world["lane_change"].any()
-    assert found.unknown["lane_is_clear"].tolist() == [False, False, unknown, False]
-    assert found.world["lane_is_clear"][[0, 1, 3]].all()
+    assert not values_of(found, "lane_change").any()
+    assert unknown_in(found, "lane_is_clear").tolist() == [False, False, unknown, False]
+    assert values_of(found, "lane_is_clear")[[0, 1, 3]].all()
 
 
 @pytest.mark.parametrize(("states", "known"), [(4, False), (6, True)])
@@ -73,9 +74,9 @@ def test_who_is_back_within_half_a_second_has_changed_no_lanes(states, known):
     ys = [0.0] * 10 + [3.0] * states + [0.0] * 10
     ego = vehicle(7, {k: (k, y) for k, y in enumerate(ys)})
     found = lane_change_signals(context_of(recording(lanes(2), [ego], step_s=0.1)))
-    changed = np.flatnonzero(found.world["lane_change"])
+    changed = np.flatnonzero(possible_in(found, "lane_change"))
     assert len(changed) == 2
-    assert found.unknown["lane_change"][changed].tolist() == [not known] * 2
+    assert unknown_in(found, "lane_change")[changed].tolist() == [not known] * 2
 
 
 @pytest.mark.parametrize(
@@ -88,8 +89,8 @@ def test_who_is_astride_for_a_second_and_comes_back_may_have_changed_lanes(y, st
     ys = [0.0] * 10 + [y] * states + [0.0] * 10
     ego = vehicle(7, {k: (k, at) for k, at in enumerate(ys)})
     found = lane_change_signals(context_of(recording(lanes(2), [ego], step_s=0.1)))
-    assert not found.world["lane_change"].any()
-    assert np.flatnonzero(found.unknown["lane_change"]).tolist() == unknown
+    assert not values_of(found, "lane_change").any()
+    assert np.flatnonzero(unknown_in(found, "lane_change")).tolist() == unknown
 
 
 @pytest.mark.parametrize(("heading", "known"), [(0.0, False), (1.4, True)])
@@ -101,8 +102,8 @@ def test_who_stands_changes_no_lanes(heading, known):
     places = {k: (20, y) for k, y in enumerate([0, 1.2, 2.4, 2.6, 2.6, 2.6])}
     ego = vehicle(7, places, heading=heading)
     found = lane_change_signals(context_of(recording(lanes(2), [ego])))
-    (change,) = np.flatnonzero(found.world["lane_change"])
-    assert found.unknown["lane_change"][change] == (not known)
+    (change,) = np.flatnonzero(possible_in(found, "lane_change"))
+    assert unknown_in(found, "lane_change")[change] == (not known)
 
 
 @pytest.mark.parametrize(("x", "known"), [(98, False), (180, True)])
@@ -115,8 +116,8 @@ def test_who_follows_a_way_of_a_lane_that_forks_may_have_changed_to_none(x, know
     ]
     ego = vehicle(7, {k: (x + 5.0 * k, min(1.1 * k, 4)) for k in range(6)})
     found = lane_change_signals(context_of(recording(road, [ego]), ("1", "2")))
-    (change,) = np.flatnonzero(found.world["lane_change"])
-    assert found.unknown["lane_change"][change] == (not known)
+    (change,) = np.flatnonzero(possible_in(found, "lane_change"))
+    assert unknown_in(found, "lane_change")[change] == (not known)
 
 
 @pytest.mark.parametrize(("x", "known"), [(76, False), (40, True)])
@@ -129,8 +130,8 @@ def test_who_follows_a_way_to_where_two_become_one_may_have_changed_to_none(x, k
     ]
     ego = vehicle(7, {k: (x + 5.0 * k, min(1.1 * k, 4)) for k in range(6)})
     found = lane_change_signals(context_of(recording(road, [ego]), ("2", "3")))
-    (change,) = np.flatnonzero(found.world["lane_change"])
-    assert found.unknown["lane_change"][change] == (not known)
+    (change,) = np.flatnonzero(possible_in(found, "lane_change"))
+    assert unknown_in(found, "lane_change")[change] == (not known)
 
 
 def test_who_goes_straight_on_into_the_only_lane_may_have_changed_to_none():
@@ -144,9 +145,9 @@ def test_who_goes_straight_on_into_the_only_lane_may_have_changed_to_none():
     ]
     ego = vehicle(7, {k: (45 + 20.0 * k, 4) for k in range(6)})
     found = lane_change_signals(context_of(recording(road, [ego]), ("1", "4", "3")))
-    (change,) = np.flatnonzero(found.world["lane_change"])
+    (change,) = np.flatnonzero(possible_in(found, "lane_change"))
     assert ego.states[change].x == 125
-    assert found.unknown["lane_change"][change]
+    assert unknown_in(found, "lane_change")[change]
 
 
 @pytest.mark.parametrize(("y", "known"), [(0.0, False), (-2.5, True)])
@@ -165,9 +166,9 @@ def test_who_follows_a_way_that_parts_slowly_may_have_changed_to_none(y, known):
     ys = np.interp(xs, *np.array([(0, 0), *off]).T) + np.where(xs < 120, y, 0.0)
     ego = vehicle(7, dict(enumerate(zip(xs, ys, strict=True))))
     found = lane_change_signals(context_of(recording(road, [ego]), ("1", "2")))
-    (change,) = np.flatnonzero(found.world["lane_change"])
+    (change,) = np.flatnonzero(possible_in(found, "lane_change"))
     assert xs[change] > 115
-    assert found.unknown["lane_change"][change] == (not known)
+    assert unknown_in(found, "lane_change")[change] == (not known)
 
 
 @pytest.mark.parametrize("ends", [False, True])
@@ -185,8 +186,8 @@ def test_who_comes_from_behind_on_a_lane_that_ends_does_not_come_into_egos(ends)
     ego = vehicle(7, {k: (120 + 5 * k, 0 if k < 4 else 4) for k in range(8)})
     other = vehicle(8, {k: (30 + 12.5 * k, 4) for k in range(5)}, speed=25.0)
     found = lane_change_signals(context_of(recording(road, [ego, other]), ("1", "3", "5")))
-    (change,) = np.flatnonzero(found.world["lane_change"])
-    assert found.world["lane_is_clear"][change] == ends
+    (change,) = np.flatnonzero(values_of(found, "lane_change"))
+    assert values_of(found, "lane_is_clear")[change] == ends
 
 
 @pytest.mark.parametrize("to_left", [True, False])
@@ -216,9 +217,11 @@ def test_who_comes_from_behind_on_a_lane_that_forks_goes_where_its_track_goes(
     elsewhere = np.zeros((2, 20), dtype=bool)
     elsewhere[1, 6:] = goes == "off"
     signals = lane_change_signals(context_of(found, ("1", "2"), elsewhere=elsewhere))
-    (change,) = np.flatnonzero(signals.world["lane_change"])
+    (change,) = np.flatnonzero(values_of(signals, "lane_change"))
     told = (
-        "?" if signals.unknown["lane_is_clear"][change] else signals.world["lane_is_clear"][change]
+        "?"
+        if unknown_in(signals, "lane_is_clear")[change]
+        else values_of(signals, "lane_is_clear")[change]
     )
     assert told == ("?" if clear == "?" else clear != ("left" if to_left else "right"))
 
@@ -241,10 +244,10 @@ def test_who_comes_from_behind_on_a_lane_that_forks_goes_where_its_track_goes(
 def test_a_mark_that_may_lie_elsewhere_may_not_have_been_crossed(ys, name, unknown):
     ego = vehicle(7, {k: (5 * k, y) for k, y in enumerate(ys)})
     signals = lane_change_signals(context_of(replace(recording(lanes(2), [ego]), name=name)))
-    changed = signals.world["lane_change"]
+    changed = possible_in(signals, "lane_change")
     assert changed.any()
-    assert bool(signals.unknown["lane_change"][changed.argmax()]) == unknown
-    assert not signals.unknown["lane_change"][~changed].any()
+    assert bool(unknown_in(signals, "lane_change")[changed.argmax()]) == unknown
+    assert not unknown_in(signals, "lane_change")[~changed].any()
 
 
 LEFT = frozenset({"left_indicator"})
@@ -263,8 +266,8 @@ INDICATORS = frozenset({"left_indicator", "right_indicator"})
 def test_the_indicator_before_a_change_of_lanes_counts(lit, expected):
     body = replace(vehicle(7, CHANGE), lamps=lit, shows=INDICATORS)
     found = changes(body=body)
-    assert found.values("indicator")[2] == expected
-    assert not found.unknown["indicator"].any()
+    assert said(found, "indicator")[2] == expected
+    assert not unknown_in(found, "indicator").any()
 
 
 @pytest.mark.parametrize(
@@ -277,14 +280,14 @@ def test_an_indicator_that_goes_out_while_ego_lies_across_the_mark_counts(last_l
     lit = {k: LEFT if k <= last_lit else frozenset() for k in range(9)}
     body = replace(vehicle(7, places, width=1.8), lamps=lit, shows=INDICATORS)
     found = changes(body=body)
-    change = found.world["lane_change"].tolist().index(True)
+    change = values_of(found, "lane_change").tolist().index(True)
     assert change == 6
-    assert found.values("indicator")[change] == expected
+    assert said(found, "indicator")[change] == expected
     if expected == "far_indicator":
         # In all states up to the change, as it was lit in all up to the mark
-        assert set(found.values("indicator")[: change + 1]) == {"far_indicator"}
+        assert set(said(found, "indicator")[: change + 1]) == {"far_indicator"}
     # A lamp that was lit longer ago announces nothing
-    assert changes(body=body, signalling_s=0.5).values("indicator")[change] == (
+    assert said(changes(body=body, signalling_s=0.5), "indicator")[change] == (
         expected if last_lit > change - 2 else "no_indicator"
     )
 
@@ -294,7 +297,7 @@ def test_what_was_lit_for_too_short_before_the_mark_stays_so():
     places = {k: (5 * k, 0.5 * (k - 0.5)) for k in range(9)}
     lit = {k: LEFT if k in (3, 4) else frozenset() for k in range(9)}
     body = replace(vehicle(7, places, width=1.8), lamps=lit, shows=INDICATORS)
-    shown = changes(body=body).values("indicator")
+    shown = said(changes(body=body), "indicator")
     assert [value == "far_indicator" for value in shown[:7]] == [False] * 5 + [True] * 2
 
 
@@ -306,10 +309,10 @@ def test_of_who_jumps_to_another_lane_unlit_nobody_knows(y, unknown, lamp):
     path = {0: (0, 0), 1: (5, 0), 2: (10, y), 3: (15, max(y, 3))}
     body = replace(vehicle(7, path), lamps=dict.fromkeys(range(4), on), shows=INDICATORS)
     found = changes(body=body)
-    assert found.world["lane_change"].tolist() == [False, False, True, False]
+    assert values_of(found, "lane_change").tolist() == [False, False, True, False]
     # Nor whether it did before what takes half a second there
     dark = not on
-    assert found.unknown["indicator"].tolist() == [dark, dark, unknown and dark, False]
+    assert unknown_in(found, "indicator").tolist() == [dark, dark, unknown and dark, False]
 
 
 def test_of_who_drives_over_the_mark_unlit_it_is_known_that_it_did_not_announce_it():
@@ -317,8 +320,8 @@ def test_of_who_drives_over_the_mark_unlit_it_is_known_that_it_did_not_announce_
     path = {k: (5 * k, y) for k, y in enumerate((0, 1.2, 2.4, 3.6))}
     body = replace(vehicle(7, path), lamps=dict.fromkeys(path, frozenset()), shows=INDICATORS)
     found = changes(body=body)
-    assert found.world["lane_change"].tolist() == [False, False, True, False]
-    assert not found.unknown["indicator"].any()
+    assert values_of(found, "lane_change").tolist() == [False, False, True, False]
+    assert not unknown_in(found, "indicator").any()
 
 
 @pytest.mark.parametrize(
@@ -335,8 +338,8 @@ def test_who_jumps_just_before_or_behind_the_mark_jumps_over_it(across, change, 
     body = replace(vehicle(7, path), lamps=dict.fromkeys(path, frozenset()), shows=INDICATORS)
     found = changes(body=body)
     flags = [k == change for k in path]
-    assert found.world["lane_change"].tolist() == flags
-    assert found.unknown["indicator"][change] == unknown
+    assert values_of(found, "lane_change").tolist() == flags
+    assert unknown_in(found, "indicator")[change] == unknown
 
 
 @pytest.mark.parametrize(("y", "unknown"), [(-2.4, False), (-3.0, True)])
@@ -344,14 +347,14 @@ def test_of_who_jumps_off_the_edge_of_the_road_unlit_nobody_knows(y, unknown):
     path = {0: (0, y), 1: (0, y), 2: (5, 0), 3: (10, 0)}
     body = replace(vehicle(7, path), lamps=dict.fromkeys(range(4), frozenset()), shows=INDICATORS)
     found = changes(body=body)
-    assert not found.world["lane_change"].any()
-    assert found.unknown["indicator"].tolist() == [False, unknown, unknown, False]
+    assert not values_of(found, "lane_change").any()
+    assert unknown_in(found, "indicator").tolist() == [False, unknown, unknown, False]
 
 
 def clear(x, speed, **thresholds):
     """Is the left lane clear in the state of the change, when ego is at 10 m?"""
     other = steady(8, x - 1.0 * speed, 4, speed=speed)
-    return bool(changes(other, **thresholds).world["lane_is_clear"][2])
+    return bool(values_of(changes(other, **thresholds), "lane_is_clear")[2])
 
 
 @pytest.mark.parametrize(
@@ -380,8 +383,8 @@ def test_who_would_have_to_brake_is_disturbed(x, speed, expected):
 )
 def test_nobody_knows_whether_one_that_is_about_to_be_past_is_disturbed(x, speed, unknown):
     found = changes(steady(8, x - 1.0 * speed, 4, speed=speed))
-    assert not found.world["lane_is_clear"][2]
-    assert found.unknown["lane_is_clear"].tolist() == [False, False, unknown, False]
+    assert not values_of(found, "lane_is_clear")[2]
+    assert unknown_in(found, "lane_is_clear").tolist() == [False, False, unknown, False]
 
 
 @pytest.mark.parametrize(("y", "unknown"), [(4.0, False), (5.9, False), (6.6, True)])
@@ -392,8 +395,8 @@ def test_who_only_reaches_over_from_the_lane_beyond_may_not_have_to_brake(y, unk
     """
     found = recording(lanes(3), [vehicle(7, CHANGE), steady(8, 0, y, 10)])
     signals = lane_change_signals(context_of(found))
-    assert not signals.world["lane_is_clear"][2]
-    assert signals.unknown["lane_is_clear"].tolist() == [False, False, unknown, False]
+    assert not values_of(signals, "lane_is_clear")[2]
+    assert unknown_in(signals, "lane_is_clear").tolist() == [False, False, unknown, False]
 
 
 @pytest.mark.parametrize(
@@ -406,7 +409,7 @@ def test_who_perhaps_has_to_brake_is_not_named_beside_who_surely_has_to(others, 
     there = [body for name, body in bodies.items() if name in others]
     signals = lane_change_signals(context_of(recording(lanes(3), [vehicle(7, CHANGE), *there])))
     assert signals.whom["lane_is_clear"].tolist() == [(), (), named, ()]
-    assert signals.unknown["lane_is_clear"].tolist() == [False, False, unknown, False]
+    assert unknown_in(signals, "lane_is_clear").tolist() == [False, False, unknown, False]
 
 
 @pytest.mark.parametrize(
@@ -421,8 +424,8 @@ def test_who_stands_and_drifts_across_a_mark_does_not_surely_disturb_others(
     other = steady(8, places[23][0] - 15 - 5.0 * 23, 4, speed=10, steps=30)
     there = recording(lanes(2), [ego, other])
     found = lane_change_signals(context_of(there, ("1",), speed_error_mps=error_mps))
-    assert np.flatnonzero(~found.world["lane_is_clear"]).tolist() == [23]
-    assert found.unknown["lane_is_clear"][23] == unknown
+    assert np.flatnonzero(~values_of(found, "lane_is_clear")).tolist() == [23]
+    assert unknown_in(found, "lane_is_clear")[23] == unknown
 
 
 @pytest.mark.parametrize(("moves_off", "unknown"), [(22, True), (10, False)])
@@ -434,8 +437,8 @@ def test_who_moves_off_when_it_has_slid_across_a_mark_does_not_surely_disturb_ot
     ego = vehicle(7, places, speed=2.0)
     other = steady(8, places[23][0] - 15 - 5.0 * 23, 4, speed=10, steps=30)
     found = lane_change_signals(context_of(recording(lanes(2), [ego, other]), ("1",)))
-    assert np.flatnonzero(~found.world["lane_is_clear"]).tolist() == [23]
-    assert found.unknown["lane_is_clear"][23] == unknown
+    assert np.flatnonzero(~values_of(found, "lane_is_clear")).tolist() == [23]
+    assert unknown_in(found, "lane_is_clear")[23] == unknown
 
 
 def test_comfort_and_reaction_are_thresholds():
@@ -445,7 +448,7 @@ def test_comfort_and_reaction_are_thresholds():
 
 def test_the_lane_is_clear_while_ego_does_not_change():
     other = steady(8, 0, 4)
-    assert changes(other).world["lane_is_clear"].tolist() == [True, True, False, True]
+    assert values_of(changes(other), "lane_is_clear").tolist() == [True, True, False, True]
     assert changes(other).whom["lane_is_clear"].tolist() == [(), (), ("8",), ()]
 
 
@@ -457,14 +460,14 @@ def test_indicators_by_side_and_where_lamps_are_unknown():
     }
     body = replace(vehicle(7, CHANGE), lamps=lamps)
     found = changes(body=body)
-    assert found.values("indicator").tolist()[:3] == [
+    assert said(found, "indicator").tolist()[:3] == [
         "no_indicator",
         "far_indicator",
         "no_indicator",
     ]
-    assert found.unknown["indicator"].tolist() == [False, False, False, True]
+    assert unknown_in(found, "indicator").tolist() == [False, False, False, True]
     left = changes(body=body, side="left")
-    assert left.values("indicator")[1] == "near_indicator"
+    assert said(left, "indicator")[1] == "near_indicator"
     assert "indicator" not in changes().world
 
 
@@ -475,8 +478,8 @@ def test_both_indicators_are_hazard_lights_or_nobody_knows(hazards, unknown):
     shows = frozenset({"left_indicator", "right_indicator", "hazard_lights"})
     lamps = dict.fromkeys(range(4), frozenset(lit))
     found = changes(body=replace(vehicle(7, CHANGE), lamps=lamps, shows=shows))
-    assert set(found.values("indicator").tolist()) == {"no_indicator"}
-    assert found.unknown["indicator"].tolist() == [unknown] * 4
+    assert set(said(found, "indicator").tolist()) == {"no_indicator"}
+    assert unknown_in(found, "indicator").tolist() == [unknown] * 4
 
 
 def test_hazard_lights_of_a_drive_whose_file_contradicts_itself_are_not_known():
@@ -485,7 +488,7 @@ def test_hazard_lights_of_a_drive_whose_file_contradicts_itself_are_not_known():
     lit = [{"left_indicator"}, both | shows, both, {"left_indicator"}]
     body = vehicle(7, CHANGE)
     body = replace(body, lamps=dict(enumerate(map(frozenset, lit))), shows=frozenset(both | shows))
-    assert changes(body=body).unknown["indicator"].tolist() == [False, True, True, False]
+    assert unknown_in(changes(body=body), "indicator").tolist() == [False, True, True, False]
 
 
 @pytest.mark.parametrize(
@@ -517,5 +520,5 @@ def test_who_turns_off_swings_over_the_lanes_of_the_road_that_it_comes_to(headin
     found = lane_change_signals(context)
     across = ego_signals(context)
     for signals, word in ((found, "lane_change"), (across, "straddling")):
-        assert signals.world[word][3]
-        assert signals.unknown[word][3] == (not known)
+        assert possible_in(signals, word)[3]
+        assert unknown_in(signals, word)[3] == (not known)

@@ -9,6 +9,7 @@ from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
 from support.builders.drive_contexts import context_of, steady, told_on_both_sides
 from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
+from support.signal_arrays import possible_in, possibly_said, unknown_in, values_of
 
 # From the right lane to the left one, at 10 m/s; the middle crosses the mark before state 2
 CHANGE = {0: (0, 0), 1: (5, 1.5), 2: (10, 2.5), 3: (15, 4)}
@@ -21,8 +22,8 @@ def marks(y, right=None, left=None, count=2, route=("1",)):
     if count > 1:
         road[1] = replace(road[1], right_mark=left)
     signals = lane_mark_signals(context_of(recording(road, [steady(7, 0, y)]), route))
-    known = {name: column[0].item() for name, column in signals.world.items()}
-    return known, {name: column[0].item() for name, column in signals.unknown.items()}
+    known = {name: possibly_said(signals, name)[0].item() for name in signals.world}
+    return known, {name: unknown_in(signals, name)[0].item() for name in signals.world}
 
 
 def test_a_map_without_marks_says_nothing_of_them():
@@ -52,7 +53,7 @@ def test_a_line_between_lanes_without_any_mark_leaves_it_unknown():
     road = lanes(3)
     road[0] = replace(road[0], left_mark="broken")
     signals = lane_mark_signals(context_of(recording(road, [steady(7, 0, 0)])))
-    assert signals.unknown["marked_lanes"].all()
+    assert unknown_in(signals, "marked_lanes").all()
 
 
 @pytest.mark.parametrize(("y", "solid"), [(0, False), (1.2, False), (1.4, True), (2.8, False)])
@@ -78,8 +79,8 @@ def test_who_gets_over_a_solid_line_has_been_on_it_however_badly_places_are_know
     road = [replace(road[0], left_mark=mark), replace(road[1], right_mark=mark)]
     ego = vehicle(7, {k: (8.0 * k, float(y)) for k, y in enumerate(ys)})
     found = lane_mark_signals(context_of(recording(road, [ego]), place_error_m=0.4))
-    values = np.where(found.world["on_solid_line"], "T", "F")
-    assert "".join(np.where(found.unknown["on_solid_line"], "?", values)) == told
+    values = np.where(values_of(found, "on_solid_line"), "T", "F")
+    assert "".join(np.where(unknown_in(found, "on_solid_line"), "?", values)) == told
 
 
 def test_who_is_parked_on_a_line_does_not_cross_it():
@@ -87,7 +88,7 @@ def test_who_is_parked_on_a_line_does_not_cross_it():
     road[0] = replace(road[0], left_mark="solid")
     parked, drives = (steady(7, 0, 1.4, speed=mps) for mps in (0, 10))
     found = [lane_mark_signals(context_of(recording(road, [ego]))) for ego in (parked, drives)]
-    assert [bool(x.world["on_solid_line"][0]) for x in found] == [False, True]
+    assert [bool(values_of(x, "on_solid_line")[0]) for x in found] == [False, True]
 
 
 def test_who_stands_on_a_line_from_the_beginning_on_has_not_been_seen_to_cross_it():
@@ -97,22 +98,18 @@ def test_who_stands_on_a_line_from_the_beginning_on_has_not_been_seen_to_cross_i
     parked = vehicle(7, {0: (50, 1.4), 1: (50.4, 1.4), 2: (50, 1.4), 3: (56, 1.4)}, speed=0.1)
     creeps = vehicle(7, {k: (50 + 1.5 * k, 1.4) for k in range(4)}, speed=3.0)
     found = [lane_mark_signals(context_of(recording(road, [ego]))) for ego in (parked, creeps)]
-    assert [x.unknown["on_solid_line"].tolist() for x in found] == [
+    assert [unknown_in(x, "on_solid_line").tolist() for x in found] == [
         [True, True, True, False],
         [False] * 4,
     ]
-    assert all(x.world["on_solid_line"].all() for x in found)
+    assert all(possible_in(x, "on_solid_line").all() for x in found)
 
 
-def test_of_two_lines_the_one_on_ego_s_side_counts():
-    # Ego's middle is in the right lane, at whose side the line is broken
-    known, _ = marks(1.5, "broken", "solid")
-    assert (known["on_solid_line"], known["broken_on_own_side"]) == (True, True)
-    known, _ = marks(1.5, "solid", "broken")
-    assert (known["on_solid_line"], known["broken_on_own_side"]) == (True, False)
-    # And in the left lane it is the other one
-    known, _ = marks(2.5, "solid", "broken", route=("2",))
-    assert (known["on_solid_line"], known["broken_on_own_side"]) == (True, True)
+@pytest.mark.parametrize(("right", "left"), [("broken", "solid"), ("solid", "broken")])
+def test_of_two_lines_which_is_on_ego_s_side_is_unknown_for_one_first_seen_on_them(right, left):
+    known, unknown = marks(1.5, right, left)
+    assert (known["on_solid_line"], unknown["on_solid_line"]) == (True, False)
+    assert unknown["broken_on_own_side"]
 
 
 def test_ego_is_in_a_lane_that_there_is():

@@ -14,6 +14,7 @@ from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording
+from support.signal_arrays import possible_in, unknown_in, values_of
 
 OUTER_M, INNER_M, STEP_S = 30.0, 26.4, 0.2
 TIMES = np.arange(0, 12, STEP_S)
@@ -67,13 +68,13 @@ def told(found, side):
     context = context_of(found, route, side)
     words = lane_change_signals(context), turning_conflicts(context)
     unknown = [
-        words[0].unknown["lane_change"],
-        words[0].unknown["lane_is_clear"],
-        words[1].unknown["turns_in_way_of"].any(axis=0),
+        unknown_in(words[0], "lane_change"),
+        unknown_in(words[0], "lane_is_clear"),
+        unknown_in(words[1], "turns_in_way_of").any(axis=0),
     ]
-    assert not words[0].world["lane_change"].any()
-    assert words[0].world["lane_is_clear"].all()
-    assert not words[1].about["turns_in_way_of"].any()
+    assert not values_of(words[0], "lane_change").any()
+    assert possible_in(words[0], "lane_is_clear").all()
+    assert not values_of(words[1], "turns_in_way_of").any()
     return [bool(x.any()) for x in unknown]
 
 

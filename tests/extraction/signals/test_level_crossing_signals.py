@@ -11,6 +11,7 @@ from rulec.extraction.signals.map.level_crossing_signals import level_crossing_s
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, straight, vehicle
+from support.signal_arrays import all_said, said, unknown_in, values_of
 
 RAILS = frozenset({"level_crossing"})
 
@@ -30,35 +31,35 @@ def told(lanes, *xs, complete=("rail",), route=("1", "2", "3")):
     found = replace(recording(lanes, [body]), complete=frozenset(complete))
     right = level_crossing_signals(context_of(found, route))
     left = level_crossing_signals(context_of(mirrored_recording(found), route, "left"))
-    for name, column in right.world.items():
-        assert column.tolist() == left.world[name].tolist(), name
+    for name in right.world:
+        assert said(right, name).tolist() == said(left, name).tolist(), name
     return right
 
 
 def test_they_are_those_of_the_map():
     xs = (992, 994, 997, 999, 1008, 1013)
     # Fronts are at 994, 996, 999, 1001, 1010 and 1015, rears 4 m behind; the zone is 5 m longer
-    found = told(road(), *xs, complete=()).world
+    found = all_said(told(road(), *xs, complete=()))
     assert found["level_crossing_zone"].tolist() == [False, True, True, True, True, False]
     assert found["enters_level_crossing"].tolist() == [False, False, False, True, False, False]
     assert found["guarded"].tolist() == found["level_crossing_zone"].tolist()
     plain = road(None, frozenset())
     assert not told(plain, *xs, complete=()).world
-    free = told(plain, *xs).world
+    free = all_said(told(plain, *xs))
     assert not free["level_crossing_zone"].any()
     assert not free["enters_level_crossing"].any()
 
 
 @pytest.mark.parametrize(("x", "unknown"), [(998.5, True), (1001.5, False)])
 def test_where_a_drive_begins_ego_may_just_have_driven_onto_it(x, unknown):
-    found = told(road(), *(x + k for k in range(4))).unknown["enters_level_crossing"]
+    found = unknown_in(told(road(), *(x + k for k in range(4))), "enters_level_crossing")
     assert found.tolist() == [unknown, False, False, False]
 
 
 def warned(lanes, *xs, **more):
     found = told(lanes, *xs, **more)
-    assert not found.world["past_level_crossing_sign"].any()
-    return found.unknown["past_level_crossing_sign"].tolist()
+    assert not values_of(found, "past_level_crossing_sign").any()
+    return unknown_in(found, "past_level_crossing_sign").tolist()
 
 
 def test_whether_a_sign_warned_of_one_is_not_known_where_it_may_have():
@@ -85,11 +86,11 @@ def test_tracks_beside_the_lane_at_the_kerb():
     rail = frozenset({"rail", "restricted_area"})
     lanes = road({"right_of": 8})
     lanes.append(straight(8, 0, 1000, -4, left_of=1, types=rail))
-    assert told(lanes, 990, 1005).world["tracks_at_kerb"].tolist() == [True, False]
+    assert values_of(told(lanes, 990, 1005), "tracks_at_kerb").tolist() == [True, False]
     # On the far side they leave room to pass at the kerb's side
     lanes = road({"left_of": 8})
     lanes.append(straight(8, 0, 1000, 4, right_of=1, types=rail))
-    assert not told(lanes, 990, 1005).world["tracks_at_kerb"].any()
+    assert not values_of(told(lanes, 990, 1005), "tracks_at_kerb").any()
 
 
 @pytest.mark.parametrize(("y", "expected"), [(0, True), (4, False)])
@@ -98,4 +99,4 @@ def test_tracks_in_the_lane_at_the_kerb_where_a_tram_runs_there(y, expected):
     ego, tram = steady(7, 0, 4 - y, 10, 4), vehicle(8, dict.fromkeys(range(4), (60, y)), "train")
     found = replace(recording(lanes, [ego, tram]), complete=frozenset({"rail"}))
     signals = level_crossing_signals(context_of(found))
-    assert signals.world["tracks_at_kerb"].tolist() == [expected] * 4
+    assert values_of(signals, "tracks_at_kerb").tolist() == [expected] * 4

@@ -13,6 +13,7 @@ from rulec.extraction.signals.map.map_signals import (
 )
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import all_said, possible_in, said, unknown_in, values_of
 
 
 def context(xs, *others, first=None, second=None):
@@ -36,18 +37,18 @@ def zebra(number, x):
 )
 def test_one_may_be_faster_from_where_the_front_is_past_a_sign(limits, told):
     first, second = ({"limit_mps": limit / 3.6} for limit in limits)
-    found = map_signals(context([90, 97, 99, 101], first=first, second=second)).world["limit"]
+    found = values_of(map_signals(context([90, 97, 99, 101], first=first, second=second)), "limit")
     assert found.tolist() == told
 
 
 def test_the_limit_of_the_lanelet_under_ego():
-    found = map_signals(context([90, 110], first={"limit_mps": 50 / 3.6})).world["limit"]
+    found = values_of(map_signals(context([90, 110], first={"limit_mps": 50 / 3.6})), "limit")
     assert found.tolist() == [50.0, NO_LIMIT_KMH]
     assert "limit" not in map_signals(context([90, 110])).world
 
 
 def test_the_least_speed_of_the_lanelet_under_ego():
-    found = map_signals(context([90, 110], first={"minimum_mps": 70 / 3.6})).world
+    found = all_said(map_signals(context([90, 110], first={"minimum_mps": 70 / 3.6})))
     assert found["minimum_limit"].tolist() == [70.0, 0.0]
     assert "minimum_limit" not in map_signals(context([90, 110], first={"limit_mps": 9.0})).world
 
@@ -56,9 +57,9 @@ def test_the_limit_is_unknown_where_a_sign_may_be_another():
     """Also as soon as ego's front is past it, from where a higher limit would apply."""
     untold = {"untold_signs": frozenset({"MAX_SPEED"})}
     drive = context([90, 97, 99, 110], first={"limit_mps": 50 / 3.6}, second=untold)
-    assert map_signals(drive).unknown["limit"].tolist() == [False, False, True, True]
+    assert unknown_in(map_signals(drive), "limit").tolist() == [False, False, True, True]
     nowhere = context([90, 110], first={"limit_mps": 50 / 3.6})
-    assert not map_signals(nowhere).unknown["limit"].any()
+    assert not unknown_in(map_signals(nowhere), "limit").any()
 
 
 def test_the_limit_of_a_junction_is_unknown_where_that_before_it_is():
@@ -71,7 +72,7 @@ def test_the_limit_of_a_junction_is_unknown_where_that_before_it_is():
     ]
     body = vehicle(7, {0: (110, 0), 1: (150, 0)})
     found = map_signals(context_of(recording(road, [body]), ("1", "2", "3")))
-    assert found.unknown["limit"].tolist() == [True, False]
+    assert unknown_in(found, "limit").tolist() == [True, False]
 
 
 @pytest.mark.parametrize(
@@ -87,7 +88,7 @@ def test_the_limit_of_a_junction_is_unknown_where_that_before_it_is():
 )
 def test_what_a_sign_says_is_unknown_where_it_may_hold(sign, told, word):
     drive = context([90, 110], first=told, second={"untold_signs": frozenset({sign})})
-    assert map_signals(drive).unknown[word].tolist() == [False, True]
+    assert unknown_in(map_signals(drive), word).tolist() == [False, True]
 
 
 @pytest.mark.parametrize(
@@ -109,18 +110,18 @@ def test_a_limit_goes_on_through_a_junction_for_who_goes_straight_on(after, turn
     end = [(x, y), (x + onward[0], y + onward[1])]
     road.append(lanelet(3, end, predecessors=(2,), limit_mps=after and after / 3.6))
     body = vehicle(7, {0: (90, 0), 1: (105, 0)})
-    found = map_signals(context_of(recording(road, [body]), ("1", "2", "3"))).world["limit"]
+    found = values_of(map_signals(context_of(recording(road, [body]), ("1", "2", "3"))), "limit")
     assert found.tolist() == [70.0, limit]
 
 
 def test_signs_of_lines_hold_until_the_line_is_crossed():
     signs = {"signs": frozenset({"STOP", "NO_OVERTAKING_START"})}
     # The front is at 92, 101, 105, the middle at 90, 99, 103
-    found = map_signals(context([90, 99, 103], first=signs)).world
+    found = all_said(map_signals(context([90, 99, 103], first=signs)))
     assert found["stop_sign"].tolist() == [True, True, False]
     assert found["no_overtaking_sign"].tolist() == [True, True, False]
     assert "give_way_sign" not in found
-    late = map_signals(context([90, 103, 107], first=signs)).world
+    late = all_said(map_signals(context([90, 103, 107], first=signs)))
     assert late["stop_sign"].tolist() == [True, True, False]
     assert late["no_overtaking_sign"].tolist() == [True, False, False]
 
@@ -135,9 +136,9 @@ def test_a_sign_holds_when_one_crosses_its_line_askew():
     lanes.append(straight(2, 100, 200, predecessors=(1,)))
     body = vehicle(7, {k: (x, 0) for k, x in enumerate(middles)}, heading=0.6)
     askew = context_of(recording(lanes, [body]), ("1", "2"))
-    crosses = junction_signals(askew).world["crosses_stop_line"]
+    crosses = values_of(junction_signals(askew), "crosses_stop_line")
     assert crosses.tolist() == [False, False, False, True, False]
-    assert map_signals(askew).world["stop_sign"].tolist() == [True, True, True, True, False]
+    assert values_of(map_signals(askew), "stop_sign").tolist() == [True, True, True, True, False]
 
 
 def test_the_distance_to_the_next_crossing_is_from_front_to_its_edge():
@@ -148,9 +149,9 @@ def test_the_distance_to_the_next_crossing_is_from_front_to_its_edge():
     # Fronts are at 12, 38, 43, 72 and 92
     expected = [26, 0, 0, 6, NO_CROSSING_M]
     assert distance_to_crossing(found) == pytest.approx(expected, abs=0.05)
-    signals = map_signals(found).world
-    assert signals["crossing_zone"].tolist() == [False, True, True, False, False]
-    assert signals["surface"].tolist() == [
+    signals = map_signals(found)
+    assert possible_in(signals, "crossing_zone").tolist() == [False, True, True, False, False]
+    assert said(signals, "surface").tolist() == [
         "carriageway",
         *(["crossing"] * 2),
         "carriageway",
@@ -160,18 +161,18 @@ def test_the_distance_to_the_next_crossing_is_from_front_to_its_edge():
 
 def test_surfaces_by_ego_s_middle():
     junction = {"types": frozenset({"intersection"})}
-    assert map_signals(context([97, 101, 103], second=junction)).world["surface"].tolist() == [
+    assert values_of(map_signals(context([97, 101, 103], second=junction)), "surface").tolist() == [
         "carriageway",
         "junction",
         "junction",
     ]
     bus_lane = {"types": frozenset({"busLane"})}
-    assert map_signals(context([97, 101], second=bus_lane)).world["surface"].tolist() == [
+    assert values_of(map_signals(context([97, 101], second=bus_lane)), "surface").tolist() == [
         "carriageway",
         "bus_lane",
     ]
     for_cycles = {"types": frozenset({"bicycleLane"})}
-    assert map_signals(context([97, 101], second=for_cycles)).world["surface"].tolist() == [
+    assert values_of(map_signals(context([97, 101], second=for_cycles)), "surface").tolist() == [
         "carriageway",
         "cycle_lane",
     ]
@@ -209,9 +210,10 @@ def test_a_crossing_that_lies_askew_begins_later_at_one_edge_of_a_lane(front, wo
 
 def surfaces(bodies, lanes, route=("1", "2")):
     found = map_signals(context_of(recording(lanes, [bodies]), route))
-    unknown = found.unknown["surface"].tolist()
+    unknown = unknown_in(found, "surface").tolist()
     return [
-        "?" if u else word for word, u in zip(found.world["surface"].tolist(), unknown, strict=True)
+        "?" if u else word
+        for word, u in zip(values_of(found, "surface").tolist(), unknown, strict=True)
     ]
 
 
@@ -253,9 +255,9 @@ def test_who_stands_where_a_junction_or_a_bus_lane_begins():
 def test_the_zone_before_a_crossing_begins_within_the_tolerance():
     for x, word in ((50.9, False), (50.98, "?"), (51.02, "?"), (51.1, True)):
         found = map_signals(context([x] * 3, zebra(8, 60)))
-        known = ~found.unknown["crossing_zone"]
+        known = ~unknown_in(found, "crossing_zone")
         assert known.all() == (word != "?")
-        assert not known.any() or set(found.world["crossing_zone"].tolist()) == {word}
+        assert not known.any() or set(values_of(found, "crossing_zone").tolist()) == {word}
 
 
 def shoulder_at(y, kind="shoulder"):

@@ -12,6 +12,7 @@ from rulec.extraction.signals.map.merge_signals import merge_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import unknown_in, values_of
 
 RIGHT, LEFT, ON = "1", "2", "3"
 
@@ -42,10 +43,10 @@ def signals(
     right = merge_signals(context_of(found, route))
     left = merge_signals(context_of(mirrored_recording(found), route, "left"))
     for name in ("narrowing", "merged"):
-        assert right.world[name].tolist() == left.world[name].tolist()
-        assert right.unknown[name].tolist() == left.unknown[name].tolist()
+        assert values_of(right, name).tolist() == values_of(left, name).tolist()
+        assert unknown_in(right, name).tolist() == unknown_in(left, name).tolist()
     abreast = (right, left)
-    assert len({str(one.about["abreast_at_narrowing"].tolist()) for one in abreast}) == 1
+    assert len({str(values_of(one, "abreast_at_narrowing").tolist()) for one in abreast}) == 1
     return right
 
 
@@ -57,24 +58,24 @@ AFTER = [False, False, False, False, True, True, True, False]
 def test_two_lanes_that_lead_to_one(y):
     # Fronts are at 42, 62, 92, 99, 101, 122, 149 and 154: 50 m before and beyond 100
     found = signals(lanes(), y=y)
-    assert found.world["narrowing"].tolist() == BEFORE
-    assert found.world["merged"].tolist() == AFTER
-    assert not found.unknown["narrowing"].any()
+    assert values_of(found, "narrowing").tolist() == BEFORE
+    assert values_of(found, "merged").tolist() == AFTER
+    assert not unknown_in(found, "narrowing").any()
 
 
 def test_a_lane_that_gets_narrow_and_ends():
     found = signals(lanes(right=(), right_width=[4.0, 4.0, 0.5]), y=4.0)
-    assert found.world["narrowing"].tolist() == BEFORE
-    assert found.world["merged"].tolist() == AFTER
+    assert values_of(found, "narrowing").tolist() == BEFORE
+    assert values_of(found, "merged").tolist() == AFTER
 
 
 def test_a_lane_that_may_go_on_beyond_the_map():
     # It is as wide at the map's end as before: it may lead to a ramp that nobody has drawn
     found = signals(lanes(right=()), y=4.0)
-    assert not found.world["narrowing"].any()
+    assert not values_of(found, "narrowing").any()
     near = [False, True, True, True, True, True, True, False]
-    assert found.unknown["narrowing"].tolist() == near
-    assert found.unknown["merged"].tolist() == near
+    assert unknown_in(found, "narrowing").tolist() == near
+    assert unknown_in(found, "merged").tolist() == near
 
 
 def test_where_a_net_has_all_lanes_that_one_ends():
@@ -82,8 +83,8 @@ def test_where_a_net_has_all_lanes_that_one_ends():
     ego = vehicle(7, {0: (80, 4), 1: (90, 4)})
     found = replace(recording(road, [ego]), complete=frozenset({"lanes"}))
     told = merge_signals(context_of(found, (LEFT, ON)))
-    assert told.world["narrowing"].all()
-    assert not told.unknown["narrowing"].any()
+    assert values_of(told, "narrowing").all()
+    assert not unknown_in(told, "narrowing").any()
 
 
 def test_where_the_whole_road_ends_and_vehicles_can_only_turn_around():
@@ -97,8 +98,8 @@ def test_where_the_whole_road_ends_and_vehicles_can_only_turn_around():
     found = replace(recording(road, [ego]), complete=frozenset({"lanes"}))
     told = merge_signals(context_of(found, ("2", "9", "10")))
     for name in ("narrowing", "merged"):
-        assert not told.world[name].any()
-        assert not told.unknown[name].any()
+        assert not values_of(told, name).any()
+        assert not unknown_in(told, name).any()
 
 
 @pytest.mark.parametrize(
@@ -136,9 +137,9 @@ def test_where_the_whole_road_ends_and_vehicles_can_only_turn_around():
 )
 def test_no_narrowing(road):
     found = signals(road, y=4.0)
-    assert not found.world["narrowing"].any()
-    assert not found.world["merged"].any()
-    assert not found.unknown["narrowing"].any()
+    assert not values_of(found, "narrowing").any()
+    assert not values_of(found, "merged").any()
+    assert not unknown_in(found, "narrowing").any()
 
 
 def test_a_third_lane_has_nothing_to_do_with_it():
@@ -151,8 +152,8 @@ def test_a_third_lane_has_nothing_to_do_with_it():
     ]
     ego = vehicle(7, {0: (80, 8), 1: (90, 8), 2: (110, 8)})
     told = merge_signals(context_of(recording(road, [ego]), ("4", "5")))
-    assert not told.world["narrowing"].any()
-    assert not told.world["merged"].any()
+    assert not values_of(told, "narrowing").any()
+    assert not values_of(told, "merged").any()
 
 
 def test_who_is_abreast():
@@ -162,7 +163,7 @@ def test_who_is_abreast():
     found = signals(lanes(), beside, ahead, same)
     # Middles of 4 m long bodies: ego is at 60 in state 1, at 97 and 99 in states 3 and 4, and from
     # there on beyond the narrowing, which is 36 m ahead of the one that it left behind
-    abreast = found.about["abreast_at_narrowing"]
+    abreast = values_of(found, "abreast_at_narrowing")
     assert [np.flatnonzero(row).tolist() for row in abreast] == [[], [3], []]
 
 
@@ -188,8 +189,8 @@ def test_who_is_abreast_comes_to_the_narrowing_with_ego(xs, told):
     """
     other = vehicle(1, {k: (x, 4) for k, x in enumerate(xs)})
     found = signals(lanes(), other, xs=(60, 80, 95, 110), step_s=1.0)
-    abreast = found.about["abreast_at_narrowing"][0]
-    unknown = found.unknown["abreast_at_narrowing"][0]
+    abreast = values_of(found, "abreast_at_narrowing")[0]
+    unknown = unknown_in(found, "abreast_at_narrowing")[0]
     assert ("?" if unknown[1] else "FT"[int(abreast[1])]) == told
 
 
@@ -205,12 +206,12 @@ def test_who_is_beside_ego_beyond_the_narrowing_is_on_another_lane():
     ego = vehicle(7, {0: (95, 8), 1: (97, 8), 2: (104, 8)})
     other = vehicle(1, {0: (97, 0), 1: (100, 4), 2: (106, 4)})
     told = merge_signals(context_of(recording(road, [ego, other]), ("4", "3")))
-    assert told.world["narrowing"].tolist() == [True, True, False]
-    assert not told.about["abreast_at_narrowing"].any()
+    assert values_of(told, "narrowing").tolist() == [True, True, False]
+    assert not values_of(told, "abreast_at_narrowing").any()
 
 
 def test_a_drive_of_one_state_and_one_that_begins_beyond():
-    assert signals(lanes(), xs=(90,)).world["narrowing"].tolist() == [True]
+    assert values_of(signals(lanes(), xs=(90,)), "narrowing").tolist() == [True]
     found = signals(lanes(), xs=(120, 152))
-    assert found.world["merged"].tolist() == [True, False]
-    assert not found.world["narrowing"].any()
+    assert values_of(found, "merged").tolist() == [True, False]
+    assert not values_of(found, "narrowing").any()

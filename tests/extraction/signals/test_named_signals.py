@@ -31,13 +31,14 @@ from rulec.extraction.signals.map.zone_signals import zone_signals
 from rulec.extraction.signals.participants.following_signals import following_signals
 from rulec.extraction.signals.participants.intention_signals import intention_signals
 from rulec.extraction.signals.participants.participant_signals import participant_signals
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import world_signals
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.recordings.recording import Weather
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording
 from support.generators.random_recordings import lanes
+from support.signal_arrays import bounds_of, texts_of, unknown_in, values_of
 
 GROUPS = (
     *(ego_signals, participant_signals, following_signals, map_signals, road_signals),
@@ -95,11 +96,11 @@ def test_a_signal_is_the_same_without_the_others(signals_of):
     for name in names(together):
         alone = signals_of(context_of(found), frozenset({name}))
         assert names(alone) == {name}
-        for part in ("world", "about", "unknown", "only", "bounds", "texts"):
-            columns, among_all = getattr(alone, part), getattr(together, part)
-            assert columns.keys() == among_all.keys() & {name}
-            for own in columns:
-                np.testing.assert_array_equal(columns[own], among_all[own])
+        assert (name in alone.world) == (name in together.world)
+        assert texts_of(alone, name) == texts_of(together, name)
+        for part in (values_of, unknown_in, bounds_of):
+            np.testing.assert_array_equal(part(alone, name), part(together, name))
+        np.testing.assert_array_equal(alone.only.get(name), together.only.get(name))
 
 
 def test_what_nobody_wants_is_not_computed():
@@ -108,7 +109,7 @@ def test_what_nobody_wants_is_not_computed():
     def gives(name):
         def signals_of(context):
             asked.append(name)
-            return SignalColumns({name: np.zeros(context.states), "by_the_way": np.ones(1)})
+            return world_signals(**{name: np.zeros(context.states), "by_the_way": np.ones(1)})
 
         return signals_of
 

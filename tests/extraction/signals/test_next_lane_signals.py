@@ -10,6 +10,7 @@ from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of, steady, told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import unknown_in, values_of
 
 STEP_S = 0.5
 
@@ -21,9 +22,9 @@ def signals(lanes, *bodies, route=("1",), **thresholds):
 
 
 def lanes_of(lanes, *bodies):
-    """Which lane ego is in (0 at the kerb, 2 farthest), and how many more than one there are."""
+    """Which lane ego is in, and how many there are."""
     found = told_on_both_sides(ego_signals, recording(lanes, bodies, step_s=STEP_S), ("1",))
-    return int(found["lane"][0]), int(found["lanes"][0])
+    return found["lane"][0], found["lanes"][0]
 
 
 def ego(x=0.0, mps=10.0, steps=4, y=0.0):
@@ -205,9 +206,9 @@ def test_a_lane_for_cycles_is_none_for_a_car():
     """Beside one lane ego's is the only one; between two there is none to go to at once."""
     cycles, behind = frozenset({"bicycleLane"}), steady(9, 0, 4, 10.0)
     one = [straight(1, 0, 600, left_of=2, types=cycles), straight(2, 0, 600, 4, right_of=1)]
-    assert lanes_of(one, ego(100, y=4), behind) == (0, 0)
+    assert lanes_of(one, ego(100, y=4), behind) == ("kerb_lane", "one_lane")
     rider = replace(ego(100, y=4), type="bicycle")
-    assert lanes_of(one, rider, behind) == (2, 1)
+    assert lanes_of(one, rider, behind) == ("far_lane", "two_lanes")
     assert signals(one, rider, behind)["near_lane_is_free"][0] == "True"
     turning = [
         straight(1, 0, 600, left_of=2),
@@ -215,7 +216,7 @@ def test_a_lane_for_cycles_is_none_for_a_car():
         straight(3, 0, 600, 8, right_of=2),
     ]
     others = (ego(100, y=8), steady(9, 0, 8, 10.0))
-    assert lanes_of(turning, *others) == (2, 1)
+    assert lanes_of(turning, *others) == ("far_lane", "two_lanes")
     assert signals(turning, *others)["near_lane_is_free"][0] == "False"
 
 
@@ -279,7 +280,9 @@ def test_a_camera_that_stands_sees_what_ego_leaves_behind(form, first, last):
     bodies = [ego(100, y=4, steps=10), steady(8, 400, 4, 10.0, steps=9, first=first)]
     found = replace(recording(two_lanes(), bodies, step_s=STEP_S), form=form)
     told = next_lane_signals(context_of(found, ("1",)))
-    words = np.where(told.unknown["near_lane_is_free"], "?", told.world["near_lane_is_free"])
+    words = np.where(
+        unknown_in(told, "near_lane_is_free"), "?", values_of(told, "near_lane_is_free")
+    )
     assert words.tolist() == ["?"] * 8 + [last] * 2
 
 

@@ -19,6 +19,7 @@ from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.net import read_net
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight
+from support.signal_arrays import unknown_in, values_of
 
 NETS = sorted((Path(__file__).parents[2] / "worlds/stored").glob("*.net.xml"))
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
@@ -76,9 +77,9 @@ def told(way, road=None, ego=EGO, turn="on", line=TURN, kind="car", route=("1", 
     right = priority_signals(context_of(found, route))
     left = priority_signals(context_of(mirrored_recording(found), route, "left"))
     word = "in_way_of_oncoming"
-    assert right.world[word].tolist() == left.world[word].tolist()
-    assert right.unknown[word].tolist() == left.unknown[word].tolist()
-    return right.world[word], right.unknown[word]
+    assert values_of(right, word).tolist() == values_of(left, word).tolist()
+    assert unknown_in(right, word).tolist() == unknown_in(left, word).tolist()
+    return values_of(right, word), unknown_in(right, word)
 
 
 def test_ego_turns_at_once_before_one_that_comes():
@@ -301,8 +302,8 @@ def test_a_recording_that_ends_before_it_is_clear(reaches_s, unknown):
     road = crossroads()
     found = recording(road, [along(7, TURN, EGO[:24]), along(8, its("on"), at(reaches_s)[:24])])
     signals = priority_signals(context_of(replace(found, step_s=STEP_S), ("1", "2", "3")))
-    assert not signals.world["in_way_of_oncoming"].any()
-    assert signals.unknown["in_way_of_oncoming"].any() == unknown
+    assert not values_of(signals, "in_way_of_oncoming").any()
+    assert unknown_in(signals, "in_way_of_oncoming").any() == unknown
 
 
 def test_one_that_is_lost_from_sight_may_have_come():
@@ -312,8 +313,8 @@ def test_one_that_is_lost_from_sight_may_have_come():
     for complete, unknown in ((frozenset(), True), (frozenset({"arrivals"}), False)):
         lost = replace(found, complete=complete)
         signals = priority_signals(context_of(lost, ("1", "2", "3")))
-        assert not signals.world["in_way_of_oncoming"].any()
-        assert signals.unknown["in_way_of_oncoming"].any() == unknown
+        assert not values_of(signals, "in_way_of_oncoming").any()
+        assert unknown_in(signals, "in_way_of_oncoming").any() == unknown
 
 
 @pytest.mark.parametrize("path", NETS, ids=lambda path: path.name.split(".")[0])

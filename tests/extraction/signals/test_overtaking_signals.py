@@ -11,6 +11,7 @@ from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of, line, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
+from support.signal_arrays import possible_in, unknown_in, values_of
 
 
 @pytest.mark.parametrize(
@@ -23,9 +24,9 @@ def test_who_sets_off_beside_others_is_not_told_to_be_overtaken(mps, ago_s, know
     place = ego.states[last].x
     other = vehicle(8, {k: (place + (k - last) * 7.5, 4.0) for k in range(last - 4, last + 6)})
     found = overtaking_signals(context_of(recording(lanes(2), [ego, other])))
-    assert found.world["being_overtaken"][last]
+    assert possible_in(found, "being_overtaken")[last]
     assert found.whom["being_overtaken"][last] == ("8",)
-    assert found.unknown["being_overtaken"][last] == (not known)
+    assert unknown_in(found, "being_overtaken")[last] == (not known)
 
 
 @pytest.mark.parametrize(("slowest", "known"), [(15, True), (11, True), (8, False)])
@@ -37,8 +38,8 @@ def test_who_falls_back_before_it_gets_past_may_have_given_up(slowest, known):
     other = vehicle(8, {k: (float(x[k]), 4.0) for k in range(20)})
     whole = replace(recording(lanes(2), [ego, other]), complete=frozenset({"arrivals"}))
     found = overtaking_signals(context_of(whole))
-    assert found.world["being_overtaken"][0] == known
-    assert found.unknown["being_overtaken"][0] == (not known)
+    assert values_of(found, "being_overtaken")[0] == known
+    assert unknown_in(found, "being_overtaken")[0] == (not known)
 
 
 def runs(speeds):
@@ -63,8 +64,8 @@ def test_who_gets_up_speed_from_a_crawl_sets_off(speeds, at, known):
     passes = {k: (places[at][0] + (k - at) * 9.0, 4.0) for k in range(at - 4, at + 8)}
     ego = vehicle(7, places | {at + k: (places[at][0] + 6.0 * k, 0.0) for k in range(1, 8)})
     found = overtaking_signals(context_of(recording(lanes(2), [ego, vehicle(8, passes)])))
-    assert found.world["being_overtaken"][at]
-    assert found.unknown["being_overtaken"][at] == (not known)
+    assert possible_in(found, "being_overtaken")[at]
+    assert unknown_in(found, "being_overtaken")[at] == (not known)
 
 
 @pytest.mark.parametrize(("steady_for", "known"), [(0, False), (6, True)])
@@ -76,8 +77,8 @@ def test_who_has_gained_speed_since_its_drive_began_may_be_getting_it_up(steady_
     found = recording(lanes(2), [vehicle(7, places), vehicle(8, passes)])
     # All traffic is in it, so that nobody who is as fast at first has stood just before
     signals = overtaking_signals(context_of(replace(found, complete=frozenset({"arrivals"}))))
-    assert signals.world["being_overtaken"][at]
-    assert signals.unknown["being_overtaken"][at] == (not known)
+    assert possible_in(signals, "being_overtaken")[at]
+    assert unknown_in(signals, "being_overtaken")[at] == (not known)
 
 
 @pytest.mark.parametrize(("gained", "known"), [(0.5, False), (0.0, True)])
@@ -87,8 +88,8 @@ def test_a_drive_that_begins_beside_one_that_overtakes_may_begin_in_gaining_spee
     other = vehicle(8, {k: (9.0 * k, 4.0) for k in range(16)})
     found = replace(recording(lanes(2), [ego, other]), complete=frozenset({"arrivals"}))
     signals = overtaking_signals(context_of(found))
-    assert signals.world["being_overtaken"][0]
-    assert signals.unknown["being_overtaken"][0] == (not known)
+    assert possible_in(signals, "being_overtaken")[0]
+    assert unknown_in(signals, "being_overtaken")[0] == (not known)
 
 
 @pytest.mark.parametrize(("before", "known"), [(24.0, False), (20.0, True), (16.0, True)])
@@ -99,8 +100,8 @@ def test_who_had_to_brake_regains_its_speed(before, known):
     passes = {k: (places[at][0] + (k - at) * 13.0, 4.0) for k in range(at - 4, at + 6)}
     ego = vehicle(7, places)
     found = overtaking_signals(context_of(recording(lanes(2), [ego, vehicle(8, passes)])))
-    assert found.world["being_overtaken"][at]
-    assert found.unknown["being_overtaken"][at] == (not known)
+    assert possible_in(found, "being_overtaken")[at]
+    assert unknown_in(found, "being_overtaken")[at] == (not known)
 
 
 @pytest.mark.parametrize("complete", [(), ("arrivals",)])
@@ -114,8 +115,8 @@ def test_who_gains_speed_may_have_braked_before_it_was_seen(first_s, gained, kno
     passes = {k: (places[at][0] + (k - at) * 11.0, 4.0) for k in range(at - 4, at + 6)}
     found = recording(lanes(2), [vehicle(7, places), vehicle(8, passes)])
     signals = overtaking_signals(context_of(replace(found, complete=frozenset(complete))))
-    assert signals.world["being_overtaken"][at]
-    assert signals.unknown["being_overtaken"][at] == (not (known or complete))
+    assert possible_in(signals, "being_overtaken")[at]
+    assert unknown_in(signals, "being_overtaken")[at] == (not (known or complete))
 
 
 @pytest.mark.parametrize(("ago_s", "known"), [(4, False), (12, True)])
@@ -140,8 +141,8 @@ def test_who_has_turned_into_a_road_gets_up_speed_yet(ago_s, known):
         114 + 8.0 * ago_s + 7.5 * (np.arange(last + 6) - last),
     )
     found = overtaking_signals(context_of(recording(road, [ego, beside]), ("1", "2", "3")))
-    assert found.world["being_overtaken"][last]
-    assert found.unknown["being_overtaken"][last] == (not known)
+    assert possible_in(found, "being_overtaken")[last]
+    assert unknown_in(found, "being_overtaken")[last] == (not known)
 
 
 @pytest.mark.parametrize("types", [(), ("accessRamp",), ("exitRamp",)])
@@ -152,8 +153,8 @@ def test_who_gets_up_speed_on_a_lane_that_joins_is_not_overtaken(types):
     ]
     bodies = [steady(7, 0, 0, 21, steps=12), steady(8, 0, 4.0, 26, steps=12)]
     found = overtaking_signals(context_of(recording(road, bodies), route=("1",)))
-    assert found.world["being_overtaken"][0] == (not types)
-    assert not found.unknown["being_overtaken"].any() or not types
+    assert values_of(found, "being_overtaken")[0] == (not types)
+    assert not unknown_in(found, "being_overtaken").any() or not types
 
 
 @pytest.mark.parametrize(("ago_s", "known"), [(4, False), (11, True)])
@@ -169,8 +170,8 @@ def test_who_has_joined_gets_up_speed_yet(ago_s, known):
     passes = {k: (10.5 * last + 13.0 * (k - last), 8.0) for k in range(last + 4)}
     other = vehicle(8, passes, speed=26)
     found = overtaking_signals(context_of(recording(road, [ego, other]), route=("1",)))
-    assert found.world["being_overtaken"][last]
-    assert found.unknown["being_overtaken"][last] == (not known)
+    assert possible_in(found, "being_overtaken")[last]
+    assert unknown_in(found, "being_overtaken")[last] == (not known)
 
 
 @pytest.mark.parametrize(("ago_s", "known"), [(4, False), (11, True)])
@@ -194,8 +195,8 @@ def test_who_has_come_onto_a_larger_road_gets_up_speed_yet(ago_s, known):
         ego = vehicle(7, {k: (10.5 * k, y if k < 3 else 4.0) for k in range(last + 4)}, speed=21)
         context = context_of(recording(road, [ego, other]), route=route)
         found = overtaking_signals(context)
-        assert found.world["being_overtaken"][last]
-        assert found.unknown["being_overtaken"][last] == (not told)
+        assert possible_in(found, "being_overtaken")[last]
+        assert unknown_in(found, "being_overtaken")[last] == (not told)
 
 
 @pytest.mark.parametrize(("speed", "known"), [(9, False), (21, True)])
@@ -203,8 +204,8 @@ def test_who_may_have_stood_before_anybody_saw_it_may_set_off(speed, known):
     """To 9 m/s it takes 4.5 s, to 21 m/s 10.5 s."""
     ego, other = steady(7, 0, 0, speed, steps=12), steady(8, 0, 4.0, speed + 5, steps=12)
     found = overtaking_signals(context_of(recording(lanes(2), [ego, other])))
-    assert found.world["being_overtaken"][0]
-    assert found.unknown["being_overtaken"][0] == (not known)
+    assert possible_in(found, "being_overtaken")[0]
+    assert unknown_in(found, "being_overtaken")[0] == (not known)
 
 
 @pytest.mark.parametrize(("speed", "known"), [(4, False), (9, True)])
@@ -213,14 +214,14 @@ def test_who_is_put_into_all_traffic_slowly_sets_off(speed, known):
     ego, other = steady(7, 0, 0, speed, steps=12), steady(8, 0, 4.0, speed + 5, steps=12)
     whole = replace(recording(lanes(2), [ego, other]), complete=frozenset({"arrivals"}))
     found = overtaking_signals(context_of(whole))
-    assert found.world["being_overtaken"][0]
-    assert found.unknown["being_overtaken"][0] == (not known)
+    assert possible_in(found, "being_overtaken")[0]
+    assert unknown_in(found, "being_overtaken")[0] == (not known)
 
 
 def overtakes(x, speed, y=0.0, **more):
     """Is ego, at 20 m/s on the left one of two lanes, overtaking a vehicle?"""
     found = recording(lanes(2), [steady(7, 0, 4, speed=20), steady(8, x, y, speed=speed)])
-    return bool(overtaking_signals(context_of(found, ("1",), **more)).world["overtaking"][0])
+    return bool(values_of(overtaking_signals(context_of(found, ("1",), **more)), "overtaking")[0])
 
 
 def test_overtaking_is_passing_a_slower_vehicle_on_its_far_side():
@@ -241,7 +242,11 @@ def coming(*others, y=4.0, side="right", count=2, steps=12, **thresholds):
     bodies = [steady(8 + k, x, y, speed, steps) for k, (x, speed) in enumerate(others)]
     found = replace(recording(lanes(count), [ego, *bodies]), complete=frozenset({"arrivals"}))
     found = overtaking_signals(context_of(found, ("1",), side, **thresholds))
-    return None if found.unknown["being_overtaken"][0] else bool(found.world["being_overtaken"][0])
+    return (
+        None
+        if unknown_in(found, "being_overtaken")[0]
+        else bool(values_of(found, "being_overtaken")[0])
+    )
 
 
 def test_being_overtaken_is_having_a_faster_vehicle_on_the_far_side():
@@ -269,7 +274,7 @@ def test_on_the_mark_the_next_lane_is_the_one_that_ego_moves_into(y, overtaken):
     """Ego, 2 m wide, comes from the lane up to y = 2; one passes two lanes farther, at y = 8."""
     bodies = [steady(7, 0, y, 10, 40), steady(8, 0, 8, 15, 40)]
     context = context_of(recording(lanes(3), bodies), near_m=200)
-    assert bool(overtaking_signals(context).world["being_overtaken"][0]) == overtaken
+    assert bool(possible_in(overtaking_signals(context), "being_overtaken")[0]) == overtaken
 
 
 def test_who_gets_past_overtakes_and_the_recording_may_end_before():
@@ -279,8 +284,8 @@ def test_who_gets_past_overtakes_and_the_recording_may_end_before():
     context = context_of(recording(lanes(2), [ego, other]), near_m=200)
     found = overtaking_signals(context)
     # And so it does 10 s later
-    assert not found.world["being_overtaken"].any()
-    assert not found.unknown["being_overtaken"][0]
+    assert not values_of(found, "being_overtaken").any()
+    assert not unknown_in(found, "being_overtaken")[0]
     assert coming((-13, 15), steps=4) is None
 
 
@@ -304,16 +309,16 @@ def test_who_regains_its_speed_after_a_jam_may_be_overtaken_meanwhile(pauses, kn
     road = [straight(1, 0, 900, left_of=2), straight(2, 0, 900, 4.0, right_of=1)]
     found = replace(recording(road, [ego, other]), complete=frozenset({"arrivals"}))
     told = overtaking_signals(context_of(found, near_m=300), frozenset({"being_overtaken"}))
-    assert told.world["being_overtaken"][40]
-    assert bool(told.unknown["being_overtaken"][40]) != known
+    assert possible_in(told, "being_overtaken")[40]
+    assert bool(unknown_in(told, "being_overtaken")[40]) != known
 
 
 def test_nobody_is_overtaken_where_all_lanes_queue():
     # All drive at 10 m/s, but those beside ego are a little faster
     queues = [*line(10, 2), *line(12, 3, y=4.0, start=0.0, number=30)]
     context = context_of(recording(lanes(2), [steady(7, 0, 0), *queues]), ("1",))
-    assert flow_signals(context).world["dense_all_lanes"][0]
-    assert not overtaking_signals(context).world["being_overtaken"][0]
+    assert possible_in(flow_signals(context), "dense_all_lanes")[0]
+    assert not values_of(overtaking_signals(context), "being_overtaken")[0]
     assert coming((0, 12)) is True
 
 
@@ -321,7 +326,7 @@ def test_overtaking_looks_as_far_as_ten_seconds_of_the_difference_need():
     # 200 m at 25 m/s more are 8 s, and farther than what counts for anything else
     ego, slow = steady(7, -90, 4.0, speed=40), steady(8, 114, 0, speed=15)
     context = context_of(recording(lanes(2), [ego, slow]), ("2",))
-    assert overtaking_signals(context).world["overtaking"][0]
+    assert values_of(overtaking_signals(context), "overtaking")[0]
     assert not context.relevant[0, 0]
 
 
@@ -331,14 +336,14 @@ def test_overtaking_begins_when_ego_pulls_out():
     slow = vehicle(8, {k: (90 + 5.0 * k, 0) for k in range(12)}, speed=10)
     context = context_of(recording(lanes(2), [vehicle(7, ways, speed=20), slow]))
     signals = overtaking_signals(context)
-    overtakes = signals.world["overtaking"].tolist()
-    begins = signals.world["begins_to_overtake"].tolist()
+    overtakes = values_of(signals, "overtaking").tolist()
+    begins = values_of(signals, "begins_to_overtake").tolist()
     assert not overtakes[3]
     assert overtakes[8]
     assert begins[: overtakes.index(True)] == [True] * overtakes.index(True)
     # Who stays behind does not
     stays = context_of(recording(lanes(2), [steady(7, 0, 0, speed=20), slow]))
-    assert not overtaking_signals(stays).world["begins_to_overtake"].any()
+    assert not values_of(overtaking_signals(stays), "begins_to_overtake").any()
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
@@ -362,7 +367,7 @@ def test_who_overtakes_beyond_the_middle_does_so_from_going_there_until_it_is_ba
     found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego, other])
     found = mirrored_recording(found) if side == "left" else found
     signals = overtaking_signals(context_of(found, side=side), frozenset({"overtaking"}))
-    told = zip(signals.world["overtaking"], signals.unknown["overtaking"], strict=True)
+    told = zip(values_of(signals, "overtaking"), unknown_in(signals, "overtaking"), strict=True)
     assert "".join("?" if dark else "FT"[int(value)] for value, dark in told) == past
 
 
@@ -373,7 +378,7 @@ def test_whose_drive_begins_beyond_the_middle_may_have_overtaken(before, told):
     ego = vehicle(7, {k: (7.0 * k, y) for k, y in enumerate(ys)}, speed=14)
     found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego])
     signals = overtaking_signals(context_of(found), frozenset({"overtaking"}))
-    words = zip(signals.world["overtaking"], signals.unknown["overtaking"], strict=True)
+    words = zip(values_of(signals, "overtaking"), unknown_in(signals, "overtaking"), strict=True)
     assert "".join("?" if dark else "FT"[int(value)] for value, dark in words) == told
 
 
@@ -383,7 +388,7 @@ def test_who_overtakes_and_is_back_for_half_a_second_overtakes_meanwhile():
     ego = vehicle(7, {k: (7.0 * k, y) for k, y in enumerate(ys)}, speed=14)
     other = vehicle(8, {k: (50 + 5.0 * k, 0.0) for k in range(len(ys))}, speed=10)
     found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego, other])
-    told = overtaking_signals(context_of(found), frozenset({"overtaking"})).world["overtaking"]
+    told = values_of(overtaking_signals(context_of(found), frozenset({"overtaking"})), "overtaking")
     assert "".join("FT"[int(value)] for value in told) == "FFFTTTTTTTTTTTTF"
 
 
@@ -402,8 +407,8 @@ def test_a_cycle_is_overtaken_but_on_a_lane_of_its_own(kind, past):
         straight(3, 0, 500, -3, 2.0, left_of=1, types=frozenset({kind})),
     ]
     told = overtaking_signals(context_of(recording(roads, [ego, cycle])), frozenset({"overtaking"}))
-    assert "".join("FT"[int(value)] for value in told.world["overtaking"]) == past
-    assert not told.unknown["overtaking"].any()
+    assert "".join("FT"[int(value)] for value in values_of(told, "overtaking")) == past
+    assert not unknown_in(told, "overtaking").any()
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
@@ -414,10 +419,10 @@ def test_who_overtakes_over_the_middle_does_so_as_soon_as_its_side_is_over_it(si
     slow = vehicle(8, {k: (30 + 2.5 * k, 0.0) for k in range(len(ys))}, speed=5)
     found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego, slow])
     found = mirrored_recording(found) if side == "left" else found
-    told = overtaking_signals(context_of(found, side=side), frozenset({"overtaking"})).world[
-        "overtaking"
-    ]
-    assert "".join("FT"[int(value)] for value in told) == "FFTTTTTTTTTTFF"
+    signals = overtaking_signals(context_of(found, side=side), frozenset({"overtaking"}))
+    assert (
+        "".join("FT"[int(value)] for value in values_of(signals, "overtaking")) == "FFTTTTTTTTTTFF"
+    )
 
 
 def test_who_goes_out_behind_another_one_may_have_meant_to_pass_whom_that_one_passes():
@@ -433,5 +438,5 @@ def test_who_goes_out_behind_another_one_may_have_meant_to_pass_whom_that_one_pa
         signals = overtaking_signals(
             context_of(recording(roads, [ego, *others])), frozenset({"overtaking"})
         )
-        assert not signals.world["overtaking"].any()
-        assert bool(signals.unknown["overtaking"][8]) == perhaps
+        assert not values_of(signals, "overtaking").any()
+        assert bool(unknown_in(signals, "overtaking")[8]) == perhaps

@@ -8,6 +8,7 @@ import pytest
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import unknown_in, values_of
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 EAST = [
@@ -40,7 +41,7 @@ def told(road, places, path=TO_NORTH, others=()):
     other = along(8, np.array(path), np.asarray(places) + 90)
     found = replace(recording([*EAST, *road], [ego, other, *others]), complete=frozenset({"YIELD"}))
     signals = priority_signals(context_of(found, route=("1", "2", "3")))
-    return bool(signals.world[SIDE].any()), bool(signals.unknown[SIDE].any())
+    return bool(values_of(signals, SIDE).any()), bool(unknown_in(signals, SIDE).any())
 
 
 def slowed(at_2_s, mps, slow_mps, until_s=10.0, then_mps=10.0):
@@ -163,5 +164,5 @@ def test_one_that_joins_ahead_of_a_slow_one_does_not_disturb_it(mps, sure):
     found = replace(recording(roads, [ego, other]), complete=frozenset({"YIELD"}))
     signals = priority_signals(context_of(found, route=("1", "2", "3")))
     side = "conflict_from_left"
-    assert bool(signals.world[side].any()) == sure
-    assert bool(signals.unknown[side].any()) != sure
+    assert bool(values_of(signals, side).any()) == sure
+    assert bool(unknown_in(signals, side).any()) != sure

@@ -15,6 +15,7 @@ from rulec.recordings.sumo.net import read_net
 from rulec.scenario.recorded.reference_line import turn
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import unknown_in, values_of
 
 NETS = sorted((Path(__file__).parents[2] / "worlds/stored").glob("*.net.xml"))
 INSIDE = frozenset({"intersection"})
@@ -59,10 +60,10 @@ def signals(road, y, heading, complete=("YIELD",)):
 def test_who_is_in_conflict(road, side, sign, comes_s, conflict):
     found = signals(road, lambda t: sign * (-3 + 10 * (t - comes_s)), sign * np.pi / 2)
     other = ({"conflict_from_left", "conflict_from_right"} - {side}).pop()
-    assert found.world[side][3] == conflict
+    assert values_of(found, side)[3] == conflict
     assert found.whom[side][3] == (("8",) if conflict else ())
-    assert not found.world[other].any()
-    assert not found.unknown[side].any()
+    assert not values_of(found, other).any()
+    assert not unknown_in(found, side).any()
 
 
 LINK = [
@@ -88,7 +89,7 @@ def test_a_drive_that_breaks_in_a_junction():
     ego = vehicle(7, {k: (-50 + 2 * k, 0) for k in range(60)}, speed=10)
     found = replace(recording(LINK, [ego]), complete=frozenset({"YIELD", "PRIORITY"}))
     route = ("1", "2", "9", "10", "11")
-    told = priority_signals(context_of(found, route, until=24)).world["unregulated_junction"]
+    told = values_of(priority_signals(context_of(found, route, until=24)), "unregulated_junction")
     # Its front is 50 m before the first junction in state 0, its middle in it from state 20 on
     assert told[20:].tolist() == [True] * 4
 
@@ -103,8 +104,8 @@ def test_nobody_is_in_the_way_at_the_next_junction_who_was_at_the_last_one(lengt
     other = vehicle(8, places, speed=10, heading=np.pi / 2)
     found = replace(recording(LINK, [ego, other], step_s=0.2), complete=frozenset({"YIELD"}))
     context = context_of(found, route=("1", "2", "9", "10", "11"))
-    enters = np.flatnonzero(junction_signals(context).world["enters_junction"])
-    conflict = priority_signals(context).world["conflict_from_right"]
+    enters = np.flatnonzero(values_of(junction_signals(context), "enters_junction"))
+    conflict = values_of(priority_signals(context), "conflict_from_right")
     assert conflict[enters].tolist() == [True, False]
 
 
@@ -139,8 +140,8 @@ def test_the_next_junction_ends_a_conflict_also_for_who_is_on_none_of_its_ways(c
     context = context_of(found, route=("1", "2", "9", "10", "11"))
     row = [body.id for body in context.surroundings.tracks.participants].index("7")
     assert len(context.surroundings.passages.of_row[row]) == (1 if cuts_corner else 2)
-    enters = np.flatnonzero(junction_signals(context).world["enters_junction"])
-    conflict = priority_signals(context).world["conflict_from_right"]
+    enters = np.flatnonzero(values_of(junction_signals(context), "enters_junction"))
+    conflict = values_of(priority_signals(context), "conflict_from_right")
     assert conflict[enters].tolist() == [True, False]
 
 
@@ -150,7 +151,7 @@ def test_a_junction_is_not_the_next_one_after_itself():
     wide = [replace(wide[0], predecessors=("4",), successors=("6",))]
     found = signals([NORTH[0], *wide, NORTH[2]], lambda t: -3 + 10 * (t - 3.0), np.pi / 2)
     # Its middle is in the area in state 3, at x = -5, and its front on the way, which begins at -4
-    assert found.world["conflict_from_right"][3]
+    assert values_of(found, "conflict_from_right")[3]
 
 
 @pytest.mark.parametrize("turns", [False, True])
@@ -175,7 +176,7 @@ def test_nobody_knows_of_one_before_another_junction_whether_it_turns_into_the_r
     )
     told = priority_signals(context_of(found, route=("14", "15", "16")))
     side = "conflict_from_left"
-    assert (told.world[side].any(), told.unknown[side].any()) == (not turns, turns)
+    assert (values_of(told, side).any(), unknown_in(told, side).any()) == (not turns, turns)
 
 
 @pytest.mark.parametrize(("length", "sure"), [(4.5, True), (20.0, True), (60.0, False)])
@@ -191,8 +192,8 @@ def test_of_a_long_one_the_front_counts(length, sure, comes_s, conflict):
     north = [lanelet(4, [(0, -150), (0, -4)], successors=(5,)), *NORTH[1:]]
     found = replace(recording([*EAST, *north], [ego, other]), complete=frozenset({"YIELD"}))
     told = priority_signals(context_of(found, route=("1", "2", "3")))
-    assert told.world["conflict_from_right"].any() == (conflict and sure)
-    assert told.unknown["conflict_from_right"].any() == (conflict and not sure)
+    assert values_of(told, "conflict_from_right").any() == (conflict and sure)
+    assert unknown_in(told, "conflict_from_right").any() == (conflict and not sure)
 
 
 @pytest.mark.parametrize(("first_y", "told"), [(4.5, "F"), (1, "?"), (-2, "?"), (-9, "T")])
@@ -203,7 +204,9 @@ def test_who_is_in_a_junction_when_a_recording_begins(first_y, told):
     found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
     words = priority_signals(context_of(found, route=("1", "2", "3")))
     side = "conflict_from_right"
-    assert ("?" if words.unknown[side].any() else "FT"[int(words.world[side].any())]) == told
+    assert (
+        "?" if unknown_in(words, side).any() else "FT"[int(values_of(words, side).any())]
+    ) == told
 
 
 @pytest.mark.parametrize(("length", "times"), [(12.0, [(1, 3)]), (2.0, [(1, 1), (3, 3)])])
@@ -241,7 +244,7 @@ def test_a_conflict_is_one_of_a_single_junction():
     other = vehicle(8, places, speed=10, heading=np.pi / 2)
     found = replace(recording([*road, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
     signals = priority_signals(context_of(found, route=("1", "2", "3", "10", "11")))
-    from_right = signals.world["conflict_from_right"]
+    from_right = values_of(signals, "conflict_from_right")
     assert not from_right[:4].any()
     assert from_right[9]
 
@@ -264,8 +267,8 @@ def test_one_that_brakes_where_its_road_bends_may_do_so_for_the_bend(turns, perh
     bodies = [ego, replace(other, states=states)]
     found = replace(recording([*EAST, *NORTH], bodies), complete=frozenset({"YIELD"}))
     told = priority_signals(context_of(found, route=("1", "2", "3")))
-    assert not told.world["conflict_from_right"].any()
-    assert told.unknown["conflict_from_right"].any() == perhaps
+    assert not values_of(told, "conflict_from_right").any()
+    assert unknown_in(told, "conflict_from_right").any() == perhaps
 
 
 @pytest.mark.parametrize(("stops_at", "ends", "perhaps"), [(-7, 9, True), (-40, 9, False)])
@@ -281,8 +284,8 @@ def test_one_that_stops_for_ego_and_is_not_recorded_further_may_have_been_held_u
     other = replace(drives, states=states)
     found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
     told = priority_signals(context_of(found, route=("1", "2", "3")))
-    assert not told.world["conflict_from_right"].any()
-    assert told.unknown["conflict_from_right"].any() == perhaps
+    assert not values_of(told, "conflict_from_right").any()
+    assert unknown_in(told, "conflict_from_right").any() == perhaps
 
 
 @pytest.mark.parametrize(("aside_m", "x", "perhaps"), [(0, 70, False), (4, 70, True), (4, 0, True)])
@@ -293,8 +296,8 @@ def test_nobody_knows_whose_way_crosses_that_of_ego_on_no_way(aside_m, x, perhap
     other = vehicle(8, dict.fromkeys(STEPS, (x, 30)), speed=0)
     found = replace(recording([*road, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
     told = priority_signals(context_of(found, route=("1", "2", "3")))
-    assert told.unknown["conflict_from_right"].any() == (perhaps and x == 0)
-    assert told.unknown["unregulated_junction"].any() == perhaps
+    assert unknown_in(told, "conflict_from_right").any() == (perhaps and x == 0)
+    assert unknown_in(told, "unregulated_junction").any() == perhaps
 
 
 def straight_sides(one, half_m):
@@ -308,14 +311,17 @@ def test_one_that_stands_when_ego_drives_in_may_wait_for_others(creeps_mps, know
     """It moves off when ego leaves the junction at 2.5 s, and comes less than a second later."""
     places = [-6 - 2.5 * creeps_mps, -6, -4, 2]
     found = signals(NORTH, lambda t: np.interp(t, [0, 2.5, 3, 3.5], places), np.pi / 2)
-    told = found.world["conflict_from_right"].any(), found.unknown["conflict_from_right"].any()
+    told = (
+        values_of(found, "conflict_from_right").any(),
+        unknown_in(found, "conflict_from_right").any(),
+    )
     assert told == (known, not known)
 
 
 def test_one_that_would_have_come_at_once_was_held_up():
     """It comes 2 s after ego has left, for it brakes from 10 m/s 9 m before."""
     found = signals(NORTH, lambda t: np.interp(t, [0, 2, 4, 4.5], [-32, -12, -7, -3]), np.pi / 2)
-    assert found.world["conflict_from_right"][3]
+    assert values_of(found, "conflict_from_right")[3]
 
 
 @pytest.mark.parametrize(("brakes_s", "perhaps"), [(2, True), (3, False)])
@@ -327,8 +333,8 @@ def test_one_that_stops_for_ego_and_waits_longer_may_have_been_held_up(brakes_s,
     times, gone = [0, brakes_s, brakes_s + 1, 6.5, 7], -12 if perhaps else -8
     places = [gone - 10 * brakes_s, gone, -7 if perhaps else -3.5, -7 if perhaps else -3.5, -3]
     found = signals(NORTH, lambda t: np.interp(t, times, places), np.pi / 2)
-    assert not found.world["conflict_from_right"].any()
-    assert found.unknown["conflict_from_right"].any() == perhaps
+    assert not values_of(found, "conflict_from_right").any()
+    assert unknown_in(found, "conflict_from_right").any() == perhaps
 
 
 @pytest.mark.parametrize(
@@ -343,7 +349,7 @@ def test_one_that_does_not_slow_down_for_ego_was_not_held_up(way, conflict):
     """
     places = np.array([-36.5, -11.5, -11.5 + way, -3])
     found = signals(NORTH, lambda t: np.interp(t, [0, 2.5, 3, 3.5], places), np.pi / 2)
-    assert found.world["conflict_from_right"].any() == conflict
+    assert values_of(found, "conflict_from_right").any() == conflict
 
 
 def turning_into_ego_s_road(driven):
@@ -376,8 +382,8 @@ def test_who_slows_down_no_more_than_its_bend_needs_may_do_so_for_that(mps, know
     driven = 55.0 + np.cumsum([0.0, *([5.0] * 4), *([mps / 2] * 11)])
     signals = turning_into_ego_s_road(driven)
     side = "conflict_from_right"
-    assert signals.world[side].any() == known
-    assert signals.unknown[side].any() != known
+    assert values_of(signals, side).any() == known
+    assert unknown_in(signals, side).any() != known
 
 
 @pytest.mark.parametrize(("at_1_s", "conflict"), [(-30, False), (-26, True)])
@@ -397,7 +403,7 @@ def test_one_that_speeds_up_when_ego_has_entered_was_not_held_up(at_1_s, conflic
     other = vehicle(8, {k: (0, ways[k]) for k in STEPS}, speed=10, heading=np.pi / 2)
     found = replace(recording([*long, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
     signals = priority_signals(context_of(found, route=("1", "2", "3")))
-    assert signals.world["conflict_from_right"].any() == conflict
+    assert values_of(signals, "conflict_from_right").any() == conflict
 
 
 @pytest.mark.parametrize(
@@ -413,7 +419,7 @@ def test_who_stops_too_far_ahead_lets_one_pass_unless_it_runs_into_it(front, con
     other = vehicle(8, places, speed=10, heading=np.pi / 2)
     found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
     signals = priority_signals(context_of(found, route=("1", "2", "3")))
-    assert signals.world["conflict_from_right"].any() == conflict
+    assert values_of(signals, "conflict_from_right").any() == conflict
 
 
 @pytest.mark.parametrize(
@@ -439,17 +445,17 @@ def test_a_sign_does_not_let_go_first_whom_a_sign_stops_too(signs, first, expect
     found = replace(recording([*east, *road], [ego, other]), complete=frozenset({"YIELD"}))
     signals = priority_signals(context_of(found, route=("1", "2", "3")))
     side = "conflict_from_right"
-    assert signals.world[side].any() == (expected == "yes")
-    assert signals.unknown[side].any() == (expected == "unknown")
+    assert values_of(signals, side).any() == (expected == "yes")
+    assert unknown_in(signals, side).any() == (expected == "unknown")
 
 
 def test_signs_order_a_junction_where_the_map_has_them():
     steady = lambda t: -50.0 + t  # noqa: E731
     free = signals(NORTH, steady, np.pi / 2)
-    assert free.world["unregulated_junction"][3]
-    assert not free.unknown["unregulated_junction"][3]
+    assert values_of(free, "unregulated_junction")[3]
+    assert not unknown_in(free, "unregulated_junction")[3]
     bare = signals(NORTH, steady, np.pi / 2, complete=())
-    assert bare.unknown["unregulated_junction"][3]
+    assert unknown_in(bare, "unregulated_junction")[3]
 
 
 def test_a_road_has_priority_until_all_of_ego_is_out_of_the_junction():
@@ -459,7 +465,7 @@ def test_a_road_has_priority_until_all_of_ego_is_out_of_the_junction():
     found = recording([*east, *NORTH], [ego])
     found = replace(found, complete=frozenset({"YIELD", "PRIORITY"}))
     told = priority_signals(context_of(found, route=("1", "2", "3")))
-    assert told.world["on_priority_road"].tolist() == [True] * 6 + [False] * 10
+    assert values_of(told, "on_priority_road").tolist() == [True] * 6 + [False] * 10
 
 
 @pytest.mark.parametrize("path", NETS, ids=lambda path: path.name.split(".")[0])
@@ -513,9 +519,9 @@ def _is_lit(drawn, way):
 def test_who_arrives_more_than_a_second_before_ego_arrives_first(y, first):
     # Ego is in the junction from 2 s on; who creeps has been there all the time
     found = signals(NORTH, y, np.pi / 2)
-    assert found.world["conflict_from_right"].any()
-    assert bool(found.world["other_arrived_first"].any()) == first
-    assert bool(found.world["arrived_together"].any()) != first
+    assert values_of(found, "conflict_from_right").any()
+    assert bool(values_of(found, "other_arrived_first").any()) == first
+    assert bool(values_of(found, "arrived_together").any()) != first
 
 
 @pytest.mark.parametrize(
@@ -546,8 +552,8 @@ def test_who_comes_up_while_ego_is_held_up_in_the_junction_may_have_been_far(awa
     found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
     told = priority_signals(context_of(found, route=("1", "2", "3")))
     side = "conflict_from_right"
-    assert told.world[side].any() or told.unknown[side].any()
-    assert bool((told.world[side] & ~told.unknown[side]).any()) == known
+    assert values_of(told, side).any() or unknown_in(told, side).any()
+    assert bool((values_of(told, side) & ~unknown_in(told, side)).any()) == known
 
 
 @pytest.mark.parametrize(("least_mps", "known"), [(0.0, True), (3.0, False)])
@@ -560,7 +566,7 @@ def test_one_that_stops_for_ego_does_not_brake_for_its_bend(least_mps, known):
     driven = 60.0 + 0.5 * np.cumsum([0.0, *speeds[:-1]])
     signals = turning_into_ego_s_road(driven)
     side = "conflict_from_right"
-    assert (signals.world[side] & ~signals.unknown[side]).any() == known
+    assert (values_of(signals, side) & ~unknown_in(signals, side)).any() == known
 
 
 def with_a_tram(road, comes_s, way=EAST, heading=np.pi / 2, x=0.0):
@@ -582,8 +588,8 @@ def on_tracks(road, *types):
 @pytest.mark.parametrize(("comes_s", "conflict"), [(2.5, True), (2.9, True), (6.5, False)])
 def test_trams_on_lanes_that_others_share(types, road, heading, comes_s, conflict):
     found = with_a_tram(on_tracks(road, *types), comes_s, heading=heading)
-    assert found.world["conflict_with_rail"][3] == conflict
-    assert not found.unknown["conflict_with_rail"].any()
+    assert values_of(found, "conflict_with_rail")[3] == conflict
+    assert not unknown_in(found, "conflict_with_rail").any()
 
 
 @pytest.mark.parametrize(
@@ -595,20 +601,20 @@ def test_a_tram_comes_from_a_side_and_whether_it_has_the_order_of_all_is_open(
     road, heading, side, other, comes_s, conflict
 ):
     found = with_a_tram(on_tracks(road, "rail"), comes_s, heading=heading)
-    assert found.world["conflict_with_rail_from_side"][3] == conflict
-    assert not found.unknown["conflict_with_rail_from_side"].any()
-    assert found.unknown[f"conflict_from_{side}"][3] == conflict
-    assert not found.unknown[f"conflict_from_{other}"].any()
-    assert not any(found.world[f"conflict_from_{x}"].any() for x in (side, other))
+    assert values_of(found, "conflict_with_rail_from_side")[3] == conflict
+    assert not unknown_in(found, "conflict_with_rail_from_side").any()
+    assert unknown_in(found, f"conflict_from_{side}")[3] == conflict
+    assert not unknown_in(found, f"conflict_from_{other}").any()
+    assert not any(values_of(found, f"conflict_from_{x}").any() for x in (side, other))
 
 
 def test_a_tram_from_a_side_is_in_conflict_in_few_words_at_a_level_crossing():
     over = [replace(x, types=x.types | {"level_crossing"}) if x.id == "2" else x for x in EAST]
     found = with_a_tram(on_tracks(NORTH, "rail"), 2.5, way=over)
-    assert found.world["conflict_with_rail"][3]
-    assert not found.world["conflict_with_rail_from_side"].any()
-    assert not found.world["conflict_from_right"].any()
-    assert not found.unknown["conflict_from_right"].any()
+    assert values_of(found, "conflict_with_rail")[3]
+    assert not values_of(found, "conflict_with_rail_from_side").any()
+    assert not values_of(found, "conflict_from_right").any()
+    assert not unknown_in(found, "conflict_from_right").any()
 
 
 @pytest.mark.parametrize(("x", "unknown"), [(0.0, True), (30.0, False)])
@@ -616,8 +622,8 @@ def test_a_tram_in_the_junction_on_no_way_of_it_may_be_in_conflict(x, unknown):
     """The map has no way across; 30 m farther on the tram is not in the junction."""
     found = with_a_tram([], 2.5, x=x)
     for word in ("conflict_with_rail", "conflict_with_rail_from_side"):
-        assert not found.world[word].any()
-        assert found.unknown[word][3] == unknown
+        assert not values_of(found, word).any()
+        assert unknown_in(found, word)[3] == unknown
 
 
 @pytest.mark.parametrize("step_s", [0.1, 0.5, 1.0])
@@ -642,5 +648,5 @@ def test_trains_at_a_level_crossing(step_s, train_mps, comes_s, conflict):
     found = replace(recording(lanes, [ego, train], step_s=step_s), complete=frozenset({"rail"}))
     signals = priority_signals(context_of(found, route=("1", "2", "3")))
     entered = round(8 / step_s)
-    assert signals.world["conflict_with_rail"][entered] == conflict
-    assert not signals.unknown["conflict_with_rail"][: entered + 1].any()
+    assert values_of(signals, "conflict_with_rail")[entered] == conflict
+    assert not unknown_in(signals, "conflict_with_rail")[: entered + 1].any()

@@ -13,6 +13,7 @@ from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, Weather
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import unknown_in, values_of
 
 INSIDE = frozenset({"intersection"})
 XS = (50, 110, 150)
@@ -46,8 +47,8 @@ def told(word, lanes, *, complete=(), xs=XS, weather=None, route=("1", "2", "3")
         if word not in signals.world:
             values.append(None)
             continue
-        column = signals.world[word]
-        unknown = signals.unknown.get(word, np.zeros(len(column), dtype=bool))
+        column = values_of(signals, word)
+        unknown = unknown_in(signals, word)
         values.append(np.where(unknown, "?", column).tolist())
     assert values[0] == values[1]
     return values[0]
@@ -151,7 +152,7 @@ def test_in_a_junction_the_road_that_leads_there_counts():
     ]
     ego = vehicle(7, {0: (115, 0), 1: (118, 0)})
     signals = road_signals(context_of(recording(two, [ego]), ("1", "2", "7", "3")))
-    assert signals.world["one_way"].tolist() == [False, False]
+    assert values_of(signals, "one_way").tolist() == [False, False]
 
 
 def test_a_lane_that_crosses_is_not_the_other_direction():

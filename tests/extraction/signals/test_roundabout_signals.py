@@ -20,6 +20,7 @@ from rulec.extraction.tracks.at_junctions.rings import ring_lanelets
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of, steady, told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import all_said, unknown_in, values_of
 
 RADIUS_M, STEP_S = 15.0, 0.25
 ARMS = (180, 270, 0, 90)
@@ -228,15 +229,15 @@ def both_sides(signals_of, found):
     left = signals_of(context_of(mirrored_recording(found), ROUTE, "left"))
     for name in ("enters_roundabout", "roundabout", "conflict_on_roundabout"):
         if name in right.world:
-            assert right.world[name].tolist() == left.world[name].tolist()
+            assert values_of(right, name).tolist() == values_of(left, name).tolist()
     return right
 
 
 @pytest.mark.parametrize("style", ["none", "arms", "all"])
 def test_where_ego_enters_it_and_is_on_it(style):
     found = both_sides(roundabout_signals, seen(style))
-    (entered,) = np.flatnonzero(found.world["enters_roundabout"])
-    inside = np.flatnonzero(found.world["roundabout"])
+    (entered,) = np.flatnonzero(values_of(found, "enters_roundabout"))
+    inside = np.flatnonzero(values_of(found, "roundabout"))
     # With a junction at the arm ego's front is there at 2.7 s; else on the ring at about 5.5 s
     expected = 5.5 if style == "none" else 2.7
     assert TIMES[entered] == pytest.approx(expected, abs=0.5)
@@ -248,7 +249,7 @@ def test_one_turns_where_one_leaves_it():
     """Onto it and along it the road bends, which is no turn that anybody signals."""
     way = 42 + 9 * TIMES
     context = context_of(seen("arms", ego=way), ROUTE)
-    turn = junction_signals(context, frozenset({"turn"})).world["turn"]
+    turn = values_of(junction_signals(context, frozenset({"turn"})), "turn")
     # The ring begins 60 m and the entry along; ego is on it from 200° to 340°
     leaves = 60 + np.hypot(*np.diff(ENTRY, axis=0).T).sum() + np.radians(140) * RADIUS_M
     turns = turn != "straight_on"
@@ -259,18 +260,18 @@ def test_one_turns_where_one_leaves_it():
 
 def test_a_drive_that_begins_on_it_does_not_enter_it():
     found = both_sides(roundabout_signals, seen("arms", ego=EGO[30:]))
-    assert not found.world["enters_roundabout"].any()
-    assert found.world["roundabout"].all()
+    assert not values_of(found, "enters_roundabout").any()
+    assert values_of(found, "roundabout").all()
 
 
 def test_signs_before_the_ring():
     signed = roundabout_signals(context_of(seen("arms", signs=("YIELD",)), ROUTE))
-    assert signed.world["roundabout_signed"].any()
+    assert values_of(signed, "roundabout_signed").any()
     bare = roundabout_signals(context_of(seen("arms"), ROUTE))
-    assert not bare.world["roundabout_signed"].any()
-    assert bare.unknown["roundabout_signed"].any()
+    assert not values_of(bare, "roundabout_signed").any()
+    assert unknown_in(bare, "roundabout_signed").any()
     net = roundabout_signals(context_of(seen("arms", complete=["YIELD"]), ROUTE))
-    assert not (net.world["roundabout_signed"] | net.unknown["roundabout_signed"]).any()
+    assert not (values_of(net, "roundabout_signed") | unknown_in(net, "roundabout_signed")).any()
 
 
 @pytest.mark.parametrize(
@@ -285,9 +286,12 @@ def test_signs_before_the_ring():
 def test_who_has_to_give_way_need_not_see_the_sign_of_the_ring(signs, complete, told):
     """SUMO's nets say who gives way, and never by which signs."""
     found = roundabout_signals(context_of(seen("arms", signs=signs, complete=complete), ROUTE))
-    holds, unknown = found.world["compulsory_roundabout"], found.unknown["compulsory_roundabout"]
+    holds, unknown = (
+        values_of(found, "compulsory_roundabout"),
+        unknown_in(found, "compulsory_roundabout"),
+    )
     assert (holds.any(), unknown.any()) == (told is True, told is None)
-    assert found.world["roundabout_signed"].any() == bool(signs)
+    assert values_of(found, "roundabout_signed").any() == bool(signs)
 
 
 def circling(at_entry_s, mps=6.0):
@@ -305,10 +309,10 @@ def test_who_comes_around(style, at_s, conflict):
     # Ego's front gets to the ring at about 6 s, its rear leaves the place at about 7.5 s
     found = both_sides(priority_signals, seen(style, circling(at_s)))
     (entered,) = np.flatnonzero(
-        roundabout_signals(context_of(seen(style), ROUTE)).world["enters_roundabout"]
+        values_of(roundabout_signals(context_of(seen(style), ROUTE)), "enters_roundabout")
     )
-    assert bool(found.world["conflict_on_roundabout"][entered]) == conflict
-    assert not found.unknown["conflict_on_roundabout"][entered]
+    assert bool(values_of(found, "conflict_on_roundabout")[entered]) == conflict
+    assert not unknown_in(found, "conflict_on_roundabout")[entered]
 
 
 def small_ring(angle, on_map=True):
@@ -346,8 +350,11 @@ def small_ring(angle, on_map=True):
 @pytest.mark.parametrize("angle", [-175, -150, -138, -90, -45, -20])
 def test_who_comes_around_a_small_ring_comes_from_its_side_whatever_the_angle(angle):
     found = small_ring(angle)
-    right = priority_signals(context_of(found, ("1", "2", "3"))).world
-    left = priority_signals(context_of(mirrored_recording(found), ("1", "2", "3"), "left")).world
+    contexts = (
+        context_of(found, ("1", "2", "3")),
+        context_of(mirrored_recording(found), ("1", "2", "3"), "left"),
+    )
+    right, left = (all_said(priority_signals(context)) for context in contexts)
     # Ego drives in at 5 s and leaves the place where the ways join at 7.5 s
     entered = round(5.5 / STEP_S)
     assert right["conflict_on_roundabout"][entered]
@@ -361,16 +368,16 @@ def test_who_comes_around_a_small_ring_comes_from_its_side_whatever_the_angle(an
 @pytest.mark.parametrize("angle", [-150, -90])
 def test_who_is_at_the_ring_on_no_way_of_the_map_may_come_around(angle):
     signals = priority_signals(context_of(small_ring(angle, on_map=False), ("1", "2", "3")))
-    assert signals.unknown["conflict_on_roundabout"][round(5.5 / STEP_S)]
+    assert unknown_in(signals, "conflict_on_roundabout")[round(5.5 / STEP_S)]
 
 
 def test_without_a_junction_on_the_map_nobody_knows():
     found = both_sides(priority_signals, seen("none", circling(7.3)))
     (entered,) = np.flatnonzero(
-        roundabout_signals(context_of(seen("none"), ROUTE)).world["enters_roundabout"]
+        values_of(roundabout_signals(context_of(seen("none"), ROUTE)), "enters_roundabout")
     )
-    assert not found.world["conflict_on_roundabout"].any()
-    assert found.unknown["conflict_on_roundabout"][entered]
+    assert not values_of(found, "conflict_on_roundabout").any()
+    assert unknown_in(found, "conflict_on_roundabout")[entered]
 
 
 def test_a_straight_road_has_nothing_of_it():
@@ -378,8 +385,8 @@ def test_a_straight_road_has_nothing_of_it():
     found = recording(road, [vehicle(7, {0: (10, 0), 1: (20, 0)})])
     signals = roundabout_signals(context_of(found))
     for name in ("roundabout", "enters_roundabout", "roundabout_signed", "compulsory_roundabout"):
-        assert not signals.world[name].any()
-    assert not priority_signals(context_of(found)).unknown["conflict_on_roundabout"].any()
+        assert not values_of(signals, name).any()
+    assert not unknown_in(priority_signals(context_of(found)), "conflict_on_roundabout").any()
 
 
 @pytest.mark.parametrize(("own", "unknown"), [(False, True), (True, False)])
@@ -402,8 +409,8 @@ def test_before_a_ring_drivers_choose_lanes_by_where_they_leave_it(own, unknown)
     bodies = [along(7, ENTERING, EGO - 30), other]
     found = recording([*road, *second.values()], bodies, step_s=STEP_S)
     signals = participant_signals(context_of(found, ROUTE))
-    assert signals.unknown["leads_elsewhere"][0, 0] == unknown
-    assert not signals.about["leads_elsewhere"][0, 0]
+    assert unknown_in(signals, "leads_elsewhere")[0, 0] == unknown
+    assert not values_of(signals, "leads_elsewhere")[0, 0]
 
 
 @pytest.mark.parametrize(("metres_away", "free"), [(30, "?"), (190, "True")])

@@ -1,6 +1,6 @@
 """Values that last too short to be more than noise."""
 
-from itertools import groupby
+from itertools import groupby, product
 
 import numpy as np
 import pytest
@@ -9,9 +9,15 @@ from hypothesis import strategies as st
 
 from rulec.extraction.signals import settling
 from rulec.extraction.signals.settling import agreeing
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import (
+    Measured,
+    SignalColumns,
+    column_of,
+    unknown_flags,
+)
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.trace.end_to_end import EndToEnd
+from rulec.trace.partly_known.partly_known_values import Truth
 
 columns = st.lists(st.sampled_from("abc"), min_size=1, max_size=20)
 
@@ -21,8 +27,22 @@ def without_blips(column, least):
 
 
 def settled(signals, least_s, step_s):
-    (column, *_) = (*signals.world.values(), *signals.about.values())
-    return settling.settled(signals, least_s, step_s, EndToEnd.of_one(column.shape[-1]))
+    (values, *_) = (*signals.world.values(), *signals.about.values())
+    spans = EndToEnd.of_one(column_of(values).shape[-1])
+    return settling.settled(signals, least_s, step_s, spans)
+
+
+def shown(truth):
+    """T for sure, F for surely not, ? for unknown."""
+    return "".join(
+        "T" if sure else "?" if possible else "F"
+        for sure, possible in zip(*np.atleast_1d(truth.sure, truth.possible), strict=True)
+    )
+
+
+def truth_of(text):
+    letters = np.array(list(text))
+    return Truth(letters == "T", letters != "F")
 
 
 def after(text, least=3):
@@ -54,10 +74,10 @@ def test_a_short_value_between_equal_ones_is_noise():
 )
 def test_at_the_ends_of_a_recording_a_short_value_is_not_known(values, unknown):
     column = np.array([values], dtype=bool)
-    found = settled(SignalColumns({"w": column[0]}, {"p": column}), {"p": 0.3, "w": 0.3}, 0.1)
-    for name in ("p", "w"):
-        flags = found.unknown.get(name, np.zeros(len(values), dtype=bool))
-        assert "".join("?" if flag else "." for flag in np.ravel(flags).tolist()) == unknown
+    signals = SignalColumns({"w": Truth.known(column[0])}, {"p": Truth.known(column)})
+    found = settled(signals, {"p": 0.3, "w": 0.3}, 0.1)
+    for truth in (found.world["w"], found.about["p"]):
+        assert "".join("?" if flag else "." for flag in np.ravel(truth.unknown).tolist()) == unknown
 
 
 @pytest.mark.parametrize(
@@ -73,13 +93,10 @@ def test_at_the_ends_of_a_recording_a_short_value_is_not_known(values, unknown):
 )
 def test_where_somebody_comes_or_goes_a_short_value_is_not_known(values, there, unknown):
     column, is_there = np.array([values], dtype=bool), np.array([[x == "t" for x in there]])
-    signals, spans = SignalColumns({}, {"p": column}), EndToEnd.of_one(len(values))
-    found = settling.settled(signals, {"p": 0.3}, 0.1, spans, is_there)
-    flags = found.unknown.get("p", np.zeros((1, len(values)), dtype=bool))
-    shown = zip(flags[0].tolist(), there, strict=True)
-    assert "".join("?" if flag and x == "t" else "." for flag, x in shown) == unknown
-    kept = [k for k, x in enumerate(there) if x == "t" and unknown[k] == "?"]
-    assert found.about["p"][0, kept].tolist() == column[0, kept].tolist()
+    signals, spans = SignalColumns({}, {"p": Truth.known(column)}), EndToEnd.of_one(len(values))
+    found = settling.settled(signals, {"p": 0.3}, 0.1, spans, is_there).about["p"]
+    told = zip(found.unknown[0].tolist(), there, strict=True)
+    assert "".join("?" if flag and x == "t" else "." for flag, x in told) == unknown
 
 
 def test_flicker_is_settled_by_what_it_began_with():
@@ -108,11 +125,47 @@ def test_what_is_said_of_one_line_is_settled_alike():
 )
 @pytest.mark.parametrize("rows", [1, 2])
 def test_what_is_settled_is_no_better_known(values, unknown, settled_unknown, rows):
-    column = np.array([values] * rows, dtype=bool)
+    codes = np.array([values] * rows)
     flags = np.array([[sign == "?" for sign in unknown]] * rows)
-    found = settled(SignalColumns(about={"p": column}, unknown={"p": flags}), {"p": 0.3}, 0.1)
-    for row in found.unknown["p"]:
+    found = settled(SignalColumns(about={"p": Measured(codes, flags)}), {"p": 0.3}, 0.1)
+    for row in unknown_flags(found.about["p"]):
         assert "".join("?" if known else "." for known in row.tolist()) == settled_unknown
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        # What may be otherwise for too short a time is not, and what is sure so briefly may be noise
+        ("TTT??TTT", "TTTTTTTT"),
+        ("FFF??FFF", "FFFFFFFF"),
+        ("TTT???TTT", "TTT???TTT"),
+        ("FFF?TT?FFF", "FFF????FFF"),
+        ("TTTF??FTTT", "TTT????TTT"),
+        # At an end nobody knows how long it lasts
+        ("TTTTT??", "TTTTT??"),
+        ("?TTTFFF", "?TTTFFF"),
+    ],
+)
+def test_truth_that_is_partly_known_is_settled_in_each_completion(given, expected):
+    signals = SignalColumns({"w": truth_of(given)})
+    assert shown(settled(signals, {"w": 0.3}, 0.1).world["w"]) == expected
+
+
+@given(st.text("TF?", min_size=1, max_size=9), st.integers(2, 5), st.integers(0, 9))
+def test_settled_truth_is_what_all_completions_have_in_common(text, least, border):
+    spans = EndToEnd((0, border, len(text)) if 0 < border < len(text) else (0, len(text)))
+
+    def settled_truth(truth):
+        found = settling.settled(SignalColumns({"w": truth}), {"w": 0.1 * least}, 0.1, spans)
+        return found.world["w"]
+
+    completions = [
+        settled_truth(Truth.known(np.array(values)))
+        for values in product(*({"T": (True,), "F": (False,)}.get(x, (True, False)) for x in text))
+    ]
+    sure = np.all([truth.sure for truth in completions], axis=0)
+    possible = np.any([truth.possible for truth in completions], axis=0)
+    assert shown(settled_truth(truth_of(text))) == shown(Truth(sure, possible))
 
 
 def test_rows_are_settled_by_themselves():
@@ -141,13 +194,12 @@ def test_settling_flags_again_changes_nothing(column, least):
 
 
 def test_durations_are_in_seconds_and_by_word():
-    flags = np.array([False, False, True, True, False, False])
-    signals = SignalColumns({"brief": flags, "moment": flags})
+    signals = SignalColumns({"brief": truth_of("FFTTFF"), "moment": truth_of("FFTTFF")})
     found = settled(signals, {"brief": 0.3}, 0.1)
-    assert not found.world["brief"].any()
-    assert found.world["moment"].tolist() == flags.tolist()
+    assert shown(found.world["brief"]) == "FFFFFF"
+    assert shown(found.world["moment"]) == "FFTTFF"
     # Two steps of 0.2 s are long enough
-    assert settled(signals, {"brief": 0.3}, 0.2).world["brief"].tolist() == flags.tolist()
+    assert shown(settled(signals, {"brief": 0.3}, 0.2).world["brief"]) == "FFTTFF"
 
 
 @pytest.mark.parametrize(
@@ -203,22 +255,13 @@ def test_who_gets_past_in_noise_does_so_once(codes, doubtful, there, found):
 
 
 def test_what_surely_is_brings_with_it_what_it_implies():
-    rows = np.array([[True, True, False], [False, False, False]])
     signals = SignalColumns(
-        world={
-            "enters_junction": np.array([False, True, False]),
-            "junction_zone": np.array([False, False, True]),
-        },
-        about={"boarding": rows, "stopped": np.zeros((2, 3), dtype=bool)},
-        unknown={
-            "boarding": np.array([[False, True, False], [False, False, False]]),
-            "stopped": np.ones((2, 3), dtype=bool),
-        },
+        world={"enters_junction": truth_of("FTF"), "junction_zone": truth_of("FFT")},
+        about={"boarding": truth_of("T?F"), "stopped": truth_of("???")},
     )
     found = agreeing(signals)
-    assert found.world["junction_zone"].tolist() == [False, True, True]
-    assert found.about["stopped"].tolist() == [[True, False, False], [False, False, False]]
-    assert found.unknown["stopped"].tolist() == [[False, True, True], [True, True, True]]
+    assert shown(found.world["junction_zone"]) == "FTT"
+    assert shown(found.about["stopped"]) == "T??"
 
 
 drives = st.lists(st.tuples(st.text("ab", min_size=2, max_size=9)), min_size=1, max_size=4)
@@ -232,13 +275,13 @@ def test_drives_end_to_end_are_settled_by_themselves(several, least, chance):
     bounds = (0, *np.cumsum([len(text) for text in texts]).tolist())
 
     def words(column, flags):
-        return SignalColumns(about={"p": column}, unknown={"p": flags})
+        return SignalColumns(about={"p": Truth.known(column).unknown_at(flags)})
 
     whole = words(np.concatenate(columns, axis=1), np.concatenate(unknown, axis=1))
     found = settling.settled(whole, {"p": 0.1 * least}, 0.1, EndToEnd(bounds))
     parts = [
         settled(words(*own), {"p": 0.1 * least}, 0.1) for own in zip(columns, unknown, strict=True)
     ]
-    for kind in ("about", "unknown"):
-        expected = np.concatenate([getattr(part, kind)["p"] for part in parts], axis=1)
-        assert getattr(found, kind)["p"].tolist() == expected.tolist()
+    for half in ("sure", "possible"):
+        expected = np.concatenate([getattr(part.about["p"], half) for part in parts], axis=1)
+        assert getattr(found.about["p"], half).tolist() == expected.tolist()

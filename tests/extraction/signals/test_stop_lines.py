@@ -18,6 +18,7 @@ from rulec.recordings.building import build_participant
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import all_said, bounds_of, possible_in, unknown_in, values_of
 
 at_junctions = SignalPasses.joined((junction_signals, line_signals))
 
@@ -72,7 +73,7 @@ def test_a_line_is_near_its_lanelets_end_though_the_road_comes_by_again():
 )
 def test_a_line_before_the_lanelet_s_end(xs, crosses):
     found = at_junctions(context(road(95.0, ["STOP"]), *xs))
-    assert found.world["crosses_stop_line"].tolist() == crosses
+    assert values_of(found, "crosses_stop_line").tolist() == crosses
 
 
 @pytest.mark.parametrize("what", [{"signs": frozenset({"STOP"})}, {"lights": (RED,)}])
@@ -85,8 +86,8 @@ def test_a_lane_in_two_pieces_has_its_line_at_the_end(what):
     _, *further = road()
     found = at_junctions(context([*halves, *further], 55, 62, 95, 101, route=("1a", "1", "2", "3")))
     name = "crosses_stop_line" if "signs" in what else "crosses_light_line"
-    assert found.world[name].tolist() == [False, False, False, True]
-    assert found.world["distance_to_stop_line"].tolist() == [43.0, 36.0, 3.0, 0.0]
+    assert values_of(found, name).tolist() == [False, False, False, True]
+    assert values_of(found, "distance_to_stop_line").tolist() == [43.0, 36.0, 3.0, 0.0]
 
 
 @pytest.mark.parametrize(
@@ -105,9 +106,9 @@ def test_amber_lights_whose_line_may_be_where_ego_could_not_stop(drawn, xs, unkn
     yellow = replace(before, lights=(Light(0, (("yellow", 99),)),))
     across = lanelet(5, [(108, -30), (108, 30)], types=INSIDE, junction="x")
     found = at_junctions(context([yellow, *further, across], *xs))
-    (state,) = np.flatnonzero(found.world["crosses_light_line"])
-    assert found.world["light"][state] == "amber_light"
-    assert found.unknown["crosses_light_line"].tolist() == [
+    (state,) = np.flatnonzero(possible_in(found, "crosses_light_line"))
+    assert values_of(found, "light")[state] == "amber_light"
+    assert unknown_in(found, "crosses_light_line").tolist() == [
         unknown and k == state for k in range(len(xs))
     ]
 
@@ -125,7 +126,7 @@ def test_who_stands_before_a_line_behind_which_its_way_turns_round(kind, length,
     ego = vehicle(7, places, kind, length=length, width=width)
     stands = context_of(recording(lanes, [ego]), ("1", "2", "3"))
     assert stands.ego_extents.s_max[0, -1] > stop_line(stands, 0, 0)[1]
-    assert not at_junctions(stands).world["crosses_stop_line"].any()
+    assert not values_of(at_junctions(stands), "crosses_stop_line").any()
 
 
 @pytest.mark.parametrize(("marked", "length"), [(True, 10), (False, 10 + 40)])
@@ -157,17 +158,17 @@ def test_a_line_before_a_junction_in_which_no_way_crosses(marked, length):
 def test_a_drive_that_ends_where_the_line_may_be(xs, unknown):
     """It is somewhere between 100 and 100.3 m."""
     found = at_junctions(context(road(None, ["STOP"]), *xs))
-    assert not found.world["crosses_stop_line"].any()
-    assert found.unknown["crosses_stop_line"].tolist() == [False, False, False, unknown]
+    assert not values_of(found, "crosses_stop_line").any()
+    assert unknown_in(found, "crosses_stop_line").tolist() == [False, False, False, unknown]
 
 
 def test_signs_hold_up_to_the_drawn_line():
     # By where the front was one state before, so that they hold while it crosses
     signs = ["STOP", "GREEN_ARROW", "NO_TURN_ON_RED"]
-    found = map_signals(context(road(110.0, signs), 95, 106, 109, 112)).world
+    found = all_said(map_signals(context(road(110.0, signs), 95, 106, 109, 112)))
     for name in ("stop_sign", "turn_on_red_sign", "no_turn_on_red_sign"):
         assert found[name].tolist() == [True, True, True, False], name
-    near = map_signals(context(road(95.0, signs), 88, 92, 95, 99)).world
+    near = all_said(map_signals(context(road(95.0, signs), 88, 92, 95, 99)))
     assert near["turn_on_red_sign"].tolist() == [True, True, True, False]
 
 
@@ -178,10 +179,10 @@ def test_signs_hold_up_to_the_drawn_line():
 def test_signs_of_who_goes_first_hold_until_ego_drives_in(drawn, signs, name):
     """However far before the junction the line is: who is to give way does so as it drives in."""
     ego = context(road(drawn, [signs]), 84, 88, 93, 97, 99, 109, 112)
-    enters = at_junctions(ego).world["enters_junction"]
+    enters = values_of(at_junctions(ego), "enters_junction")
     (state,) = np.flatnonzero(enters)
     assert ego.ego_extents.s_max[0, state] > 100
-    found = map_signals(ego).world[name]
+    found = values_of(map_signals(ego), name)
     assert found[: state + 1].all()
     assert not found[-1]
 
@@ -196,12 +197,12 @@ def test_a_sign_within_a_junction_does_not_hold_up_to_the_next_one():
         straight(5, 150, 300, predecessors=(4,)),
     ]
     ego = context(lanes, 105, 117, 121, 124, 130, route=("1", "2", "3", "4", "5"))
-    assert map_signals(ego).world["give_way_sign"].tolist() == [True, True, True, False, False]
+    assert values_of(map_signals(ego), "give_way_sign").tolist() == [True, True, True, False, False]
 
 
 def test_signs_do_not_hold_up_to_a_junction_far_behind_their_line():
     lanes = road(75.0, ["YIELD"])
-    found = map_signals(context(lanes, 60, 72, 76, 90, 102)).world["give_way_sign"]
+    found = values_of(map_signals(context(lanes, 60, 72, 76, 90, 102)), "give_way_sign")
     assert found.tolist() == [True, True, True, False, False]
 
 
@@ -209,8 +210,8 @@ def test_a_sign_of_the_lane_beside_is_not_ego_s():
     lanes = road(None, ["GREEN_ARROW"])
     lanes[0] = replace(lanes[0], left_of="4")
     lanes.append(straight(4, 0, 100, 4, right_of=1))
-    assert map_signals(context(lanes, 50, 60)).world["turn_on_red_sign"].all()
-    beside = map_signals(context(lanes, 50, 60, y=4.0)).world["turn_on_red_sign"]
+    assert values_of(map_signals(context(lanes, 50, 60)), "turn_on_red_sign").all()
+    beside = values_of(map_signals(context(lanes, 50, 60, y=4.0)), "turn_on_red_sign")
     assert not beside.any()
     assert "turn_on_red_sign" not in map_signals(context(road(), 50, 60)).world
 
@@ -235,25 +236,25 @@ def test_a_train_whose_way_crosses_ego_s(comes_s, conflict):
     train = vehicle(9, places, "train", heading=np.pi / 2, length=12)
     found = recording(road(None, (), *rails()), [ego, train])
     signals = priority_signals(context_of(found, ("1", "2", "3")))
-    assert bool(signals.world["conflict_with_rail"].any()) == conflict
-    assert not signals.world["conflict_from_right"].any()
+    assert bool(values_of(signals, "conflict_with_rail").any()) == conflict
+    assert not values_of(signals, "conflict_from_right").any()
 
 
 def test_the_way_and_the_time_to_a_line():
     # Fronts at 52, 62, 72, 82, 92 and 102 m, 20 m/s
     found = line_signals(context(road(95.0, ["STOP"]), 50, 60, 70, 80, 90, 100))
-    way, time = found.world["distance_to_stop_line"], found.world["time_to_stop_line"]
+    way, time = values_of(found, "distance_to_stop_line"), values_of(found, "time_to_stop_line")
     assert way.tolist() == pytest.approx([43, 33, 23, 13, 3, 0], abs=0.05)
     assert time.tolist() == pytest.approx([2.15, 1.65, 1.15, 0.65, 0.15, 0], abs=0.01)
-    near, far = found.bounds["distance_to_stop_line"]
+    near, far = bounds_of(found, "distance_to_stop_line")
     assert (near[1], far[1]) == (pytest.approx(32.95, abs=0.05), pytest.approx(33.05, abs=0.05))
     # Over it there is none any more
-    assert (near[5], far[5], found.bounds["time_to_stop_line"][1][5]) == (0, 0, 0)
+    assert (near[5], far[5], bounds_of(found, "time_to_stop_line")[1][5]) == (0, 0, 0)
 
 
 def test_one_that_stands_takes_for_ever_to_a_line():
     found = line_signals(context(road(95.0, ["STOP"]), 90, 90, 90))
-    assert found.world["time_to_stop_line"].tolist() == [1000.0] * 3
+    assert values_of(found, "time_to_stop_line").tolist() == [1000.0] * 3
 
 
 def test_without_lights_and_stop_signs_nobody_knows_of_lines():
@@ -261,7 +262,7 @@ def test_without_lights_and_stop_signs_nobody_knows_of_lines():
 
 
 def test_the_way_to_a_junction():
-    found = line_signals(context(road(), 50, 96, 99, 118, 125)).world["distance_to_junction"]
+    found = values_of(line_signals(context(road(), 50, 96, 99, 118, 125)), "distance_to_junction")
     assert found.tolist() == pytest.approx([48, 2, 0, 0, 1000], abs=0.05)
 
 
@@ -284,9 +285,9 @@ def test_where_all_have_to_stop(own, other, comes_from, all_stop, unknown):
     ]
     lanes = road(None, [own], *(across if comes_from else across[1:]))
     found = at_junctions(context(lanes, 80, 90, 102))
-    assert found.world["all_way_stop"].tolist() == [all_stop] * 3
-    assert found.unknown["all_way_stop"].tolist() == [unknown] * 3
-    assert map_signals(context(lanes, 80, 90, 99)).world["stop_sign"].all()
+    assert values_of(found, "all_way_stop").tolist() == [all_stop] * 3
+    assert unknown_in(found, "all_way_stop").tolist() == [unknown] * 3
+    assert values_of(map_signals(context(lanes, 80, 90, 99)), "stop_sign").all()
 
 
 @pytest.mark.parametrize(
@@ -306,8 +307,10 @@ def test_places_do_not_tell_whether_one_that_stands_at_a_line_has_crossed_it(fro
     told = context(road(95.0, ["STOP"]), *[front - 2 for front in fronts])
     told.__dict__["tolerances"] = replace(told.tolerances, place_m=0.5)
     found = at_junctions(told)
-    assert "".join(".?"[x] for x in found.unknown["crosses_stop_line"].tolist()) == may
-    assert not (found.world["crosses_stop_line"] & found.unknown["crosses_stop_line"]).any()
+    assert "".join(".?"[x] for x in unknown_in(found, "crosses_stop_line").tolist()) == may
+    assert not (
+        values_of(found, "crosses_stop_line") & unknown_in(found, "crosses_stop_line")
+    ).any()
 
 
 @pytest.mark.parametrize(
@@ -328,7 +331,7 @@ def test_who_stops_in_a_junction_may_have_crossed_a_line_that_is_not_drawn(place
     t = np.arange(len(places)) * 0.5
     ego = build_participant("7", "car", t, places, 0 * t, step_s=0.5)
     found = line_signals(context_of(recording(lanes, [ego]), ("1", "2", "3")))
-    crosses, unknown = (x["crosses_light_line"] for x in (found.world, found.unknown))
+    crosses, unknown = (of(found, "crosses_light_line") for of in (values_of, unknown_in))
     told = zip(crosses.tolist(), unknown.tolist(), strict=True)
     assert "".join("?" if dark else "FT"[crossed] for crossed, dark in told) == known
 
@@ -336,7 +339,7 @@ def test_who_stops_in_a_junction_may_have_crossed_a_line_that_is_not_drawn(place
 def first_known(signals, ego, name):
     """Whether a word of an ego is known in its first state, and nowhere unknown after it."""
     found = signals(ego)
-    unknown = found.unknown[name].tolist()
+    unknown = unknown_in(found, name).tolist()
     assert not any(unknown[1:])
     return not unknown[0]
 
@@ -360,7 +363,7 @@ def test_where_a_drive_begins_ego_may_just_have_crossed_a_line(front, moves, kno
 def test_a_sign_whose_line_ego_may_just_have_crossed_may_hold(front, known):
     ego = context(road(99.9, ["STOP"]), *[front - 2 + k for k in range(8)])
     assert first_known(map_signals, ego, "stop_sign") == known
-    assert not map_signals(ego).world["stop_sign"].any()
+    assert not values_of(map_signals(ego), "stop_sign").any()
 
 
 @pytest.mark.parametrize(("resumes", "known"), [(None, True), (8, False)])
@@ -378,5 +381,5 @@ def test_the_light_of_a_line_is_what_it_showed_while_ego_was_not_seen():
     for resumes, light in ((12, "green_light"), (9, "")):
         body = replace(vehicle(7, places), resumes=resumes)
         found = line_signals(context_of(recording(lit, [body, other]), ("1", "2", "3")))
-        assert found.unknown["crosses_light_line"].tolist() == [True] + [False] * 4
-        assert found.world["light"][0] == light
+        assert unknown_in(found, "crosses_light_line").tolist() == [True] + [False] * 4
+        assert values_of(found, "light")[0] == light

@@ -13,6 +13,7 @@ from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight
+from support.signal_arrays import unknown_in, values_of
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 STEPS_S = pytest.mark.parametrize("step_s", [0.04, 0.1, 0.25, 0.5])
@@ -44,10 +45,10 @@ def told(ego, other, step_s=0.1, sign=None, words=("conflict_from_right",)):
     right = priority_signals(context_of(found, ("1", "2", "3")))
     left = priority_signals(context_of(mirrored_recording(found), ("1", "2", "3"), "left"))
     for word, other_word in zip(words, mirrored, strict=True):
-        assert right.world[word].tolist() == left.world[other_word].tolist()
-        assert right.unknown[word].tolist() == left.unknown[other_word].tolist()
-    sure = np.all([right.world[word] & ~right.unknown[word] for word in words], axis=0)
-    maybe = np.all([right.world[word] | right.unknown[word] for word in words], axis=0)
+        assert values_of(right, word).tolist() == values_of(left, other_word).tolist()
+        assert unknown_in(right, word).tolist() == unknown_in(left, other_word).tolist()
+    sure = np.all([values_of(right, word) & ~unknown_in(right, word) for word in words], axis=0)
+    maybe = np.all([values_of(right, word) | unknown_in(right, word) for word in words], axis=0)
     return "T" if sure.any() else "?" if maybe.any() else "F"
 
 

@@ -16,6 +16,7 @@ from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import unknown_in, values_of
 
 at_junctions = SignalPasses.joined((junction_signals, line_signals))
 
@@ -52,7 +53,7 @@ def told(word, xs, lanes=None, **thresholds):
     values = []
     for one, side in ((found, "right"), (mirrored_recording(found), "left")):
         signals = at_junctions(context_of(one, ("1", "2", "5"), side, **thresholds))
-        column, unknown = signals.world[word], signals.unknown.get(word, False)
+        column, unknown = values_of(signals, word), unknown_in(signals, word)
         values.append(np.where(unknown, "?", column).tolist())
     assert values[0] == values[1]
     return values[0]
@@ -69,7 +70,7 @@ def test_a_drive_that_ends_before_the_only_way_which_turns():
     def turns(*places):
         found = recording(bend, [vehicle(7, dict(enumerate(places)))])
         signals = at_junctions(context_of(found, ("1", "3", "6")))
-        column, unknown = signals.world["turn"], signals.unknown["turn"]
+        column, unknown = values_of(signals, "turn"), unknown_in(signals, "turn")
         return np.where(unknown, "?", column).tolist()
 
     assert turns((80, 0), (94, 0), (97, 0)) == ["straight_on", "?", "?"]
@@ -88,8 +89,8 @@ def test_a_drive_that_ends_in_a_junction_where_its_own_lane_leads_nowhere():
     ]
     found = recording(lanes, [vehicle(7, {k: (x, 0) for k, x in enumerate((80, 94, 97, 103))})])
     signals = at_junctions(context_of(found, ("8", "3", "6")))
-    assert signals.world["turn"][-1] == "turn_far"
-    assert signals.unknown["turn"].tolist() == [False, True, True, True]
+    assert values_of(signals, "turn")[-1] == "turn_far"
+    assert unknown_in(signals, "turn").tolist() == [False, True, True, True]
 
 
 def test_a_drive_that_ends_before_the_junction():
@@ -124,7 +125,7 @@ def test_what_ego_prepares_for_is_not_known_near_the_drive_s_end():
     # A road without junctions gives nothing to prepare for
     ego = vehicle(7, {k: (x, 0) for k, x in enumerate(xs)})
     alone = at_junctions(context_of(recording([straight(1, -200, 300)], [ego])))
-    assert not alone.unknown["preparing_to_leave"].any()
+    assert not unknown_in(alone, "preparing_to_leave").any()
 
 
 @pytest.mark.parametrize(("preparing_s", "first"), [(10.0, 0), (2.0, 4)])
@@ -165,7 +166,7 @@ def test_a_way_without_a_light_beside_others_with_one_leads_past_it(complete):
     found = replace(found, complete=frozenset({"light"} if complete else ()))
     signals = at_junctions(context_of(found, ("1", "2", "5")))
     light = "no_light" if complete else "red_light"
-    assert signals.world["light"].tolist() == [light] * 3
+    assert values_of(signals, "light").tolist() == [light] * 3
 
 
 def test_who_follows_a_road_that_bends_may_not_have_turned():
@@ -179,12 +180,17 @@ def test_who_follows_a_road_that_bends_may_not_have_turned():
     ego = vehicle(7, dict(enumerate(places)))
     route = ("1", "3", "6")
     plain = at_junctions(context_of(recording(lanes, [ego]), route))
-    assert plain.world["turn"].tolist() == ["straight_on", "turn_far", "turn_far", "straight_on"]
-    assert not plain.unknown["turn"].any()
+    assert values_of(plain, "turn").tolist() == [
+        "straight_on",
+        "turn_far",
+        "turn_far",
+        "straight_on",
+    ]
+    assert not unknown_in(plain, "turn").any()
     lanes[1] = replace(lanes[1], types=lanes[1].types | {"straightOn"})
     bends = at_junctions(context_of(recording(lanes, [ego]), route))
-    assert bends.unknown["turn"].tolist() == [False, True, True, False]
-    assert not bends.world["preparing_to_leave"].any()
+    assert unknown_in(bends, "turn").tolist() == [False, True, True, False]
+    assert not values_of(bends, "preparing_to_leave").any()
 
 
 def test_a_turn_behind_a_way_that_is_straight_on_is_one():
@@ -198,8 +204,13 @@ def test_a_turn_behind_a_way_that_is_straight_on_is_one():
     lanes[1] = replace(lanes[1], types=lanes[1].types | {"straightOn"})
     ego = vehicle(7, dict(enumerate([(60, 0), (92, 0), (110, 4.2), (114, 30)])))
     found = at_junctions(context_of(recording(lanes, [ego]), ("1", "2", "3", "6")))
-    assert found.world["turn"].tolist() == ["straight_on", "turn_far", "turn_far", "straight_on"]
-    assert not found.unknown["turn"].any()
+    assert values_of(found, "turn").tolist() == [
+        "straight_on",
+        "turn_far",
+        "turn_far",
+        "straight_on",
+    ]
+    assert not unknown_in(found, "turn").any()
 
 
 def is_sure_of_lane(xs, other, lanes=None):

@@ -12,6 +12,7 @@ from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import said, unknown_in, values_of
 
 INSIDE = frozenset({"intersection"})
 RED = (Light(0, (("red", 9),)),)
@@ -40,8 +41,8 @@ def told(lanes, *bodies, complete=(), **more):
     found = replace(recording(lanes, bodies), complete=frozenset(complete), **more)
     right = zone_signals(context_of(found, ("1", "2", "3")))
     left = zone_signals(context_of(mirrored_recording(found), ("1", "2", "3"), "left"))
-    for name, column in right.world.items():
-        assert column.tolist() == left.world[name].tolist(), name
+    for name in right.world:
+        assert said(right, name).tolist() == said(left, name).tolist(), name
     return right
 
 
@@ -53,8 +54,8 @@ def queueing(number, x):
 def exit_clear(lanes, ego, *others):
     body = going(7, ego) if isinstance(ego, tuple) else ego
     found = told(lanes, body, *others)
-    unknown = found.unknown["exit_clear"].tolist()
-    values = found.world["exit_clear"].tolist()
+    unknown = unknown_in(found, "exit_clear").tolist()
+    values = values_of(found, "exit_clear").tolist()
     return ["?" if u else v for u, v in zip(unknown, values, strict=True)]
 
 
@@ -177,7 +178,7 @@ def test_a_crossing_before_the_junction_is_another_place():
 
 
 def kind(lanes, *, complete=(), x=40.0):
-    (word,) = set(told(lanes, going(7, (x, x)), complete=complete).world["crossing_kind"])
+    (word,) = set(values_of(told(lanes, going(7, (x, x)), complete=complete), "crossing_kind"))
     return str(word)
 
 
@@ -241,8 +242,8 @@ def lit_from_the_side(lights):
 )
 def test_lights_that_nobody_tells_may_direct_a_crossing_at_a_junction(more, word):
     found = told(more, going(7, (40.0, 40.0)))
-    unknown = found.unknown["crossing_kind"].any()
-    assert word == ("unknown" if unknown else found.world["crossing_kind"][0])
+    unknown = unknown_in(found, "crossing_kind").any()
+    assert word == ("unknown" if unknown else values_of(found, "crossing_kind")[0])
     assert kind(more, complete=["light"]) == "zebra"
 
 
@@ -253,8 +254,8 @@ def test_a_crossing_that_lanes_with_lights_lead_over_may_have_lights_for_all_lan
     onward = {"types": frozenset()}
     lanes = road(None, onward, straight(8, 0, 100, y=20, lights=RED), across)
     found = told(lanes, going(7, (40.0, 40.0)))
-    unknown = found.unknown["crossing_kind"].any()
-    assert word == ("unknown" if unknown else found.world["crossing_kind"][0])
+    unknown = unknown_in(found, "crossing_kind").any()
+    assert word == ("unknown" if unknown else values_of(found, "crossing_kind")[0])
 
 
 def test_without_a_crossing_the_kind_is_the_usual_one():

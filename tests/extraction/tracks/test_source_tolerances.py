@@ -26,6 +26,7 @@ from rulec.recordings.recording import StatedError
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, vehicle
 from support.generators.random_recordings import lanes
+from support.signal_arrays import said, unknown_in, values_of
 
 
 def of_source(name, *bodies, form="CommonRoad scenario", count=2):
@@ -174,7 +175,7 @@ def test_a_gap_as_near_to_the_safe_one_as_the_source_is_good(name, gap_m, known)
     # 1.32 m; by 0.1 m/s and 0.05 m, 0.43 m.
     ego, other = steady(7, 0, 0, 20), steady(8, 4 + gap_m, 0, 20)
     found = participant_signals(context_of(of_source(name, ego, other)))
-    assert found.unknown["safe_gap"][0, 1] == (not known)
+    assert unknown_in(found, "safe_gap")[0, 1] == (not known)
 
 
 def test_a_speed_near_a_threshold():
@@ -185,19 +186,16 @@ def test_a_speed_near_a_threshold():
         ("USA_US101", slower, True),
     ):
         found = ego_signals(context_of(of_source(name, ego)))
-        assert found.unknown["can_stop_at_once"].all() == (not known)
-    assert (
-        not ego_signals(context_of(of_source("x", slow, form="SUMO data")))
-        .unknown["can_stop_at_once"]
-        .any()
-    )
+        assert unknown_in(found, "can_stop_at_once").all() == (not known)
+    simulated = ego_signals(context_of(of_source("x", slow, form="SUMO data")))
+    assert not unknown_in(simulated, "can_stop_at_once").any()
 
 
 def test_a_simulated_change_of_lanes_in_one_step_is_no_speed():
     # 45 km/h, and 4 m sideways in the last step: by places alone 58 km/h
     places = {k: (12.5 * 0.5 * k, 0.0) for k in range(7)} | {7: (12.5 * 3.5, 4.0)}
     found = ego_signals(context_of(of_source("x", vehicle(7, places), form="SUMO data")))
-    assert found.world["speed"] == pytest.approx(np.full(8, 45.0))
+    assert values_of(found, "speed") == pytest.approx(np.full(8, 45.0))
 
 
 def test_time_headway_and_speed_are_of_the_same_speed():
@@ -206,7 +204,7 @@ def test_time_headway_and_speed_are_of_the_same_speed():
     ego = vehicle(7, {k: (x / 2, y / 2) for k, (x, y) in ahead.items()}, heading=0.3)
     context = context_of(of_source("x", ego, steady(8, 30, 0, 0)))
     about = participant_signals(context).about
-    speed = ego_signals(context).world["speed"]
+    speed = values_of(ego_signals(context), "speed")
     assert speed == pytest.approx(np.full(4, 36.0), abs=0.01)
     assert about["time_headway"][0] == pytest.approx(about["gap"][0] / 10, abs=0.01)
 
@@ -230,8 +228,8 @@ def test_who_is_level_to_within_a_tolerance_has_no_station(name, x, station, kno
     bodies = steady(7, 0, 0), steady(8, x, 4)
     found = participant_signals(context_of(of_source(name, *bodies)))
     # In the second state: whom ego is beside in the first one it may be passing
-    assert found.values("station")[0, 1] == station
-    assert found.unknown["station"][0, 1] == (not known)
+    assert said(found, "station")[0, 1] == station
+    assert unknown_in(found, "station")[0, 1] == (not known)
 
 
 @pytest.mark.parametrize(
@@ -250,7 +248,7 @@ def test_who_passes_has_a_station_all_along(xs, known):
     other = vehicle(8, {k: (10.0 * k + x, 4) for k, x in enumerate(xs)}, speed=10.0)
     ego = vehicle(7, {k: (10.0 * k, 0) for k in range(len(xs))}, speed=10.0)
     found = participant_signals(context_of(of_source("ZAM", ego, other)))
-    assert tuple(~found.unknown["station"][0]) == known
+    assert tuple(~unknown_in(found, "station")[0]) == known
 
 
 def test_overtaking_that_hangs_on_a_tolerance_is_unknown():
@@ -259,5 +257,5 @@ def test_overtaking_that_hangs_on_a_tolerance_is_unknown():
         ego, other = steady(7, 0, 4, 20), steady(8, 100, 0, mps)
         context = context_of(of_source("ZAM", ego, other), ("2",))
         found = overtaking_signals(context)
-        assert found.unknown["overtaking"][0] == (not known)
-        assert found.world["overtaking"][0] == (mps == 10.0)
+        assert unknown_in(found, "overtaking")[0] == (not known)
+        assert values_of(found, "overtaking")[0] == (mps == 10.0)

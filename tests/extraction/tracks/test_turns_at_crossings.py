@@ -15,6 +15,7 @@ from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.tracks.at_junctions.junctions import junctions_of
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.signal_arrays import values_of
 
 RADIUS = 15.0
 ROUTE = ("1", "2", "3", "4", "5")
@@ -51,7 +52,7 @@ def test_a_turn_of_which_only_the_middle_crosses_another_lane(mirror, turn):
     # By an arc the middle part begins 7.9 m behind the straight lanelet's end and is as long
     assert (start, end) == (pytest.approx(107.9, abs=0.3), pytest.approx(115.7, abs=0.3))
     assert turn_at(context, start, end) == turn
-    assert junction_signals(context).world["turn"][-1] == turn
+    assert values_of(junction_signals(context), "turn")[-1] == turn
 
 
 def test_a_way_turns_as_the_road_does():

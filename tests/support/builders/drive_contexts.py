@@ -14,6 +14,7 @@ from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.scenario.recorded.junction_lanelets import junction_lanelets
 from support.builders.recordings import vehicle
+from support.signal_arrays import said, unknown_in
 
 EGO = "7"
 
@@ -57,9 +58,8 @@ def told_on_both_sides(signals, found, route, **thresholds):
     told = []
     for side in sides:
         words = {}
-        for name, column in {**side.world, **side.about}.items():
-            unknown = side.unknown.get(name, np.zeros(column.shape, dtype=bool))
-            words[name] = np.where(unknown, "?", column).tolist()
+        for name in {**side.world, **side.about}:
+            words[name] = np.where(unknown_in(side, name), "?", said(side, name)).tolist()
         told.append(words)
     assert told[0] == told[1]
     return told[0]

@@ -10,11 +10,12 @@ from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import about_the_middle, oncoming_side
 from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
-from rulec.extraction.signals.signal_columns import ObjectSignal, WorldSignal
+from rulec.extraction.signals.signal_columns import OfObjects
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import distinct
 
 _BESIDE_M = 0.5
@@ -27,7 +28,7 @@ _ALONG = np.cos(np.pi / 4)
 """Cosine of the largest angle to the road at which a pedestrian walks along it, either way."""
 
 
-def _oncoming_clear(context: DriveContext) -> WorldSignal:
+def _oncoming_clear(context: DriveContext) -> Truth:
     """Whether oncoming traffic leaves room to overtake, and where that is unknown.
 
     It does where ego need not leave the lanes of its direction, in the far one of which it may
@@ -52,7 +53,9 @@ def _oncoming_clear(context: DriveContext) -> WorldSignal:
     against &= context.tracks.of_type("vehicle")[present.rows]
     cells = present.part(against.nonzero()[0])
     if not len(cells):
-        return WorldSignal(np.ones(context.states, dtype=bool), ends & ~alone & ~far_enough)
+        return Truth.known(np.ones(context.states, dtype=bool)).unknown_at(
+            ends & ~alone & ~far_enough
+        )
     comes = (np.abs(cells.of(context.extents.turned)) > np.pi / 2) & cells.of(context.relevant)
     cells = cells.part(comes.nonzero()[0])
     columns, station = cells.columns, cells.of(relations.station(context))
@@ -66,7 +69,7 @@ def _oncoming_clear(context: DriveContext) -> WorldSignal:
     )
     meets |= context.spans.within(met, steps) | _meets_beyond_middle(context, met | soon)
     unknown = ends & ~far_enough | _may_brake_for_ego(context, cells)
-    return WorldSignal(alone | ~meets, ~alone & ~meets & unknown)
+    return Truth.known(alone | ~meets).unknown_at(~alone & ~meets & unknown)
 
 
 def _may_brake_for_ego(context: DriveContext, cells: Cells) -> Flags:
@@ -120,7 +123,7 @@ def _beyond_own_lanes(context: DriveContext) -> Flags:
     return beyond
 
 
-def _obstructed(context: DriveContext) -> WorldSignal:
+def _obstructed(context: DriveContext) -> Truth:
     """Whether an obstacle in one of ego's lanes leaves no room there, and where that is unknown.
 
     Obstacles stand ahead, beside ego, or so near behind it that ego may still be on its way back;
@@ -132,7 +135,7 @@ def _obstructed(context: DriveContext) -> WorldSignal:
     blocked, perhaps = np.zeros((2, context.states), dtype=bool)
     cells, needed = _obstacles(context)
     if not len(cells):
-        return WorldSignal(blocked, perhaps)
+        return Truth.known(blocked).unknown_at(perhaps)
     own = context.ego_extents
     needed += cells.of(own.d_max[0] - own.d_min[0])
     near, sets = _near_obstacle(context, cells), cells.of(context.lanes_within[0])
@@ -142,7 +145,7 @@ def _obstructed(context: DriveContext) -> WorldSignal:
         blocked |= cells.in_columns(there & near & cells.of(used[:, lane]))
         bodies = cells.part(there.nonzero()[0])
         perhaps |= _on_the_way_round(context, bodies, lane, used[:, lane])
-    return WorldSignal(blocked, perhaps & ~blocked)
+    return Truth(blocked, blocked | perhaps)
 
 
 def _obstacles(context: DriveContext) -> tuple[Cells, Floats]:
@@ -222,16 +225,16 @@ def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
     return near
 
 
-def _room_on_near_side(context: DriveContext) -> ObjectSignal:
+def _room_on_near_side(context: DriveContext) -> OfObjects:
     """Whether participants leave room for ego between them and the road's near edge."""
     first, end = context.lane_edges
     others, right = context.extents, context.side == "right"
     room = others.from_bound(first)[0] if right else -others.from_bound(end)[1]
     width = context.ego_extents.d_max[0] - context.ego_extents.d_min[0] + _BESIDE_M
-    return ObjectSignal(room >= width, only=context.tracks.of_type("road_user"))
+    return OfObjects(room >= width, context.tracks.of_type("road_user"))
 
 
-def _needs_access(context: DriveContext) -> WorldSignal:
+def _needs_access(context: DriveContext) -> Truth:
     """Whether ego turns off within ``access_s``; and where its drive ends too early to know."""
     steps = context.steps_in(context.thresholds.access_s)
     turns = np.zeros(context.states, dtype=bool)
@@ -243,7 +246,7 @@ def _needs_access(context: DriveContext) -> WorldSignal:
             if abs(own.passages.way(passage).turned) > least:
                 turns[columns] |= (numbers >= passage.first - steps) & (numbers <= passage.last)
     ends = spans.columns + steps >= spans.end
-    return WorldSignal(turns, ends & ~turns)
+    return Truth(turns, turns | ends)
 
 
 clearance_signals = SignalPasses(

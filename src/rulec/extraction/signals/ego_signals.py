@@ -9,7 +9,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.array_types import Flags
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     about_the_middle,
@@ -22,14 +22,14 @@ from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.signals.signal_columns import (
-    SignalColumns,
-    WorldSignal,
+    Measured,
     rounded,
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.track import TrackOutlines
+from rulec.trace.partly_known.partly_known_values import Number, Truth
 from rulec.trace.plain_arrays import medians
 
 _EGO_TYPES = {
@@ -47,16 +47,14 @@ _HAIR_M = 0.001
 _PLACES = ("centred", "at_near_edge", "at_far_edge")
 
 
-def _ego_type(context: DriveContext) -> SignalColumns:
+def _ego_type(context: DriveContext) -> Measured:
     types, spread = [body.type for body in context.ego.participants], context.spans.spread
-    return SignalColumns(
-        {"ego_type": spread([_EGO_TYPES.get(kind, "ego_car") for kind in types])},
-        # Some files say no more about a vehicle than that it is one
-        unknown={"ego_type": spread([kind == "vehicle" for kind in types])},
-    )
+    # Some files say no more about a vehicle than that it is one
+    untold = spread([kind == "vehicle" for kind in types])
+    return Measured(spread([_EGO_TYPES.get(kind, "ego_car") for kind in types]), untold)
 
 
-def _ego_length(context: DriveContext) -> WorldSignal:
+def _ego_length(context: DriveContext) -> Floats:
     """Ego's length, of its own rectangle if known: a turning body is longer along the road."""
     outlines = [body.outlines for body in context.ego.participants]
     own = [x.track.length if isinstance(x, TrackOutlines) else np.nan for x in outlines]
@@ -66,47 +64,45 @@ def _ego_length(context: DriveContext) -> WorldSignal:
         (told,) = (~np.isnan(lengths)).nonzero()
         median, _ = medians(context.spans.number[told], lengths[told], context.spans.n_drives)
         length = np.where(np.isnan(length), median, length)
-    return WorldSignal(rounded(context.spans.spread(length)))
+    return rounded(context.spans.spread(length))
 
 
-def _speed(context: DriveContext) -> WorldSignal:
+def _speed(context: DriveContext) -> Measured:
     speed, _ = own_speed(context)
-    return WorldSignal(rounded(speed * KMH_PER_MPS), bounds=speed_bounds(context))
+    return Measured(rounded(speed * KMH_PER_MPS), bounds=speed_bounds(context))
 
 
-def _change_of_speed(context: DriveContext) -> SignalColumns:
-    limits = context.thresholds
+def _accelerating(context: DriveContext) -> Truth:
+    return _acceleration_of(context) > context.thresholds.accelerating_mps2
+
+
+def _braking_hard(context: DriveContext) -> Truth:
+    return _acceleration_of(context) < -context.thresholds.braking_hard_mps2
+
+
+def _acceleration_of(context: DriveContext) -> Number:
+    """Ego's acceleration (m/s²) within its error."""
+    return Number.within(context.ego.acceleration[0], context.ego.acceleration_error[0])
+
+
+def _acceleration(context: DriveContext) -> Measured:
     gained, wrong = context.ego.acceleration[0], context.ego.acceleration_error[0]
-    return SignalColumns(
-        {
-            "accelerating": gained > limits.accelerating_mps2,
-            "braking_hard": gained < -limits.braking_hard_mps2,
-        },
-        unknown={
-            "accelerating": abs(gained - limits.accelerating_mps2) < wrong,
-            "braking_hard": abs(gained + limits.braking_hard_mps2) < wrong,
-        },
-    )
+    return Measured(rounded(gained), bounds=rounded_outward(gained - wrong, gained + wrong))
 
 
-def _acceleration(context: DriveContext) -> WorldSignal:
-    gained, wrong = context.ego.acceleration[0], context.ego.acceleration_error[0]
-    return WorldSignal(rounded(gained), bounds=rounded_outward(gained - wrong, gained + wrong))
-
-
-def _stopping(context: DriveContext) -> WorldSignal:
+def _stopping(context: DriveContext) -> Truth:
     (speed, error), slow = own_speed(context), context.thresholds.stops_at_once_kmh / KMH_PER_MPS
-    return WorldSignal(speed <= slow, abs(speed - slow) < error)
+    return Truth.known(speed <= slow).unknown_at(abs(speed - slow) < error)
 
 
-def _lane(context: DriveContext) -> WorldSignal:
+def _lane(context: DriveContext) -> Measured:
     lane, moves = _from_kerb(context, context.steady_lane), np.zeros(context.states, dtype=bool)
     for other in (context.ego_lane, context.steady_lane_from_beside):
         if (context.steady_lane != other).any():
             moves |= lane != _from_kerb(context, other)
     # Beside a lane that only joins or leaves, the kerb lane may as well be ego's
     at_side = (lane == _MIDDLE) & ~_nearer_goes_on(context)
-    return WorldSignal(lane, moves | at_side, texts=_LANES)
+    return Measured(lane, moves | at_side, texts=_LANES)
 
 
 def _nearer_goes_on(context: DriveContext) -> Flags:
@@ -118,23 +114,23 @@ def _nearer_goes_on(context: DriveContext) -> Flags:
     return found
 
 
-def _lane_number(context: DriveContext) -> WorldSignal:
+def _lane_number(context: DriveContext) -> Measured:
     number, other, from_beside = (
         np.clip(_rank(context, lane), 0, len(_NUMBERS) - 1)
         for lane in (context.steady_lane, context.ego_lane, context.steady_lane_from_beside)
     )
-    return WorldSignal(number, (number != other) | (number != from_beside), texts=_NUMBERS)
+    return Measured(number, (number != other) | (number != from_beside), texts=_NUMBERS)
 
 
-def _apart_from_far_lane(context: DriveContext) -> WorldSignal:
+def _apart_from_far_lane(context: DriveContext) -> Truth:
     apart, other, from_beside = (
         _from_far(context, lane) > 1
         for lane in (context.steady_lane, context.ego_lane, context.steady_lane_from_beside)
     )
-    return WorldSignal(apart, (apart != other) | (apart != from_beside))
+    return Truth.known(apart).unknown_at((apart != other) | (apart != from_beside))
 
 
-def _lane_count(context: DriveContext) -> WorldSignal:
+def _lane_count(context: DriveContext) -> Measured:
     """The number of lanes, the largest at ego's rear, middle and front.
 
     A vehicle beside ego where ways part is no longer on ego's road once ego's middle is past that
@@ -145,12 +141,12 @@ def _lane_count(context: DriveContext) -> WorldSignal:
     counts = [travel_lanes_at(context, at).sum(axis=1) for at in places]
     count = np.maximum.reduce(counts)
     numbers = np.minimum(np.maximum(count - 1, 0), 2)
-    return WorldSignal(numbers, texts=_COUNTS)
+    return Measured(numbers, texts=_COUNTS)
 
 
-def _lane_position(context: DriveContext) -> WorldSignal:
+def _lane_position(context: DriveContext) -> Measured:
     place = _place_in_lane(context)
-    return WorldSignal(place, texts=_PLACES)
+    return Measured(place, texts=_PLACES)
 
 
 def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
@@ -172,7 +168,7 @@ def _from_far(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     return count - 1 - _rank(context, lane)
 
 
-def _straddling(context: DriveContext) -> WorldSignal:
+def _straddling(context: DriveContext) -> Truth:
     """Whether ego is in two lanes; unknown where tolerances or the map decide, or ego turns off.
 
     A turning body swings over the lanes of the road that it enters. Ego also straddles on its way
@@ -188,7 +184,7 @@ def _straddling(context: DriveContext) -> WorldSignal:
             unknown |= straddling & (spans.next_state(askew) < spans.next_state(~straddling))
     over = _goes_over_the_middle(context)
     straddling, unknown = straddling | over, unknown & ~over
-    return WorldSignal(straddling, unknown)
+    return Truth.known(straddling).unknown_at(unknown)
 
 
 def _goes_over_the_middle(context: DriveContext) -> Flags:
@@ -257,7 +253,8 @@ ego_signals = SignalPasses(
         "ego_type": _ego_type,
         "ego_length": _ego_length,
         "speed": _speed,
-        ("accelerating", "braking_hard"): _change_of_speed,
+        "accelerating": _accelerating,
+        "braking_hard": _braking_hard,
         "acceleration": _acceleration,
         "can_stop_at_once": _stopping,
         "lane": _lane,

@@ -27,10 +27,11 @@ from rulec.extraction.signals.queues import (
     queues_by_lane,
     vehicles_around,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
+from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import medians_hold
 
 TIMES_AS_FAST = 2.0
@@ -76,15 +77,9 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     if congested.any():
         moot = np.isinf(gap_in_lane(context, relations.BEHIND)) | _comes_up(context, congested)
         moot |= _is_behind_cycle(context) | _is_behind_moving_bottleneck(context, congested)
-    unknown = congested & (part | moot)
-    return SignalColumns(
-        {"congested": congested, "CONGESTED": congested, "walking_pace_flow": walking},
-        unknown={
-            "congested": unknown,
-            "CONGESTED": unknown,
-            "walking_pace_flow": walking & (part_walks | moot),
-        },
-    )
+    jam = Truth(congested & ~(part | moot), congested)
+    walks = Truth(walking & ~(part_walks | moot), walking)
+    return SignalColumns({"congested": jam, "CONGESTED": jam, "walking_pace_flow": walks})
 
 
 def _in_junctions(context: DriveContext, around: VehiclesAround, chosen: NDArray[intp]) -> Flags:
@@ -182,28 +177,28 @@ def _is_slow(
     return slow & on_lanes.all(axis=0) & beside
 
 
-def _dense_all_lanes(context: DriveContext) -> WorldSignal:
+def _dense_all_lanes(context: DriveContext) -> Truth:
     dense, _, not_told = dense_lines(context)
-    return WorldSignal(dense, not_told)
+    return Truth.known(dense).unknown_at(not_told)
 
 
-def _far_lane_queue(context: DriveContext) -> WorldSignal:
+def _far_lane_queue(context: DriveContext) -> Truth:
     queues, are_slow = queues_by_lane(context)
     slow = queues & are_slow
     queue, fewer = (_beside(context, slow[reading]) for reading in (MEASURED, STRICT))
     # Whether a lane farther out is the queue beside ego's depends on the vehicle that is passed
     more = _at_far_side(context, slow[LOOSE])
-    return WorldSignal(queue, more & ~fewer)
+    return Truth.known(queue).unknown_at(more & ~fewer)
 
 
-def _own_lane_queue(context: DriveContext) -> WorldSignal:
+def _own_lane_queue(context: DriveContext) -> Truth:
     """Whether ego's lane is a slow queue; unknown where errors or the definition decide."""
     queues, are_slow = queues_by_lane(context)
     slow = queues & are_slow
     queue, fewer, more = (
         slow[reading, context.ego_lane, context.spans.columns] for reading in READINGS
     )
-    return WorldSignal(queue, more & ~fewer)
+    return Truth.known(queue).unknown_at(more & ~fewer)
 
 
 def _at_far_side(context: DriveContext, lanes: Flags) -> Flags:

@@ -16,11 +16,12 @@ from rulec.extraction.computed_once import once, once_a_map
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import SHOULDER, map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
-from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
+from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Lanelet, LaneMark, is_lane
 from rulec.scenario.recorded.route import lanelet_area
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import distinct
 
 _SOLID = frozenset({"solid", "double_solid"})
@@ -71,7 +72,7 @@ def _marked_rows(context: DriveContext) -> MarkedRows:
     return MarkedRows(rows, different.searchsorted(keys))
 
 
-def _marked_lanes(context: DriveContext) -> WorldSignal | None:
+def _marked_lanes(context: DriveContext) -> Truth | None:
     """Whether all lines between ego's lanes are marked."""
     if not map_contents(context).marks:
         return None
@@ -81,7 +82,7 @@ def _marked_lanes(context: DriveContext) -> WorldSignal | None:
     all_marked = np.array(
         [bool(row) and all(set(marks) != {"none"} for marks in row) for row in between]
     )
-    return WorldSignal(all_marked[marked.number], ~told[marked.number])
+    return Truth.known(all_marked[marked.number]).unknown_at(~told[marked.number])
 
 
 def _lines_under_ego(context: DriveContext) -> SignalColumns:
@@ -99,7 +100,9 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     names = ("on_solid_line", "broken_on_own_side", "single_line")
     stays = context.spans.all(~context.ego_moves)
     if stays.all():
-        return SignalColumns(dict.fromkeys(names, np.zeros(context.states, dtype=bool)))
+        return SignalColumns(
+            dict.fromkeys(names, Truth.known(np.zeros(context.states, dtype=bool)))
+        )
     place, offsets = context.tolerances.place_m, context.map_offset_m
     unmoved, low, high = (
         np.zeros(context.states),
@@ -133,8 +136,12 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     not_told &= ~_gets_over(context, found[:, 0], outer)
     not_told |= found[:, 0] & _not_moved_yet(context)
     found[stays], not_told[stays] = False, False
-    unknown = {**dict.fromkeys(names, not_told), "broken_on_own_side": not_told | found[:, 3]}
-    return SignalColumns(dict(zip(names, found.T, strict=False)), unknown=unknown)
+    told = {
+        name: Truth.known(own).unknown_at(not_told)
+        for name, own in zip(names, found.T, strict=False)
+    }
+    told["broken_on_own_side"] = told["broken_on_own_side"].unknown_at(found[:, 3])
+    return SignalColumns(told)
 
 
 def _gets_over(context: DriveContext, on_it: Flags, outer: Flags) -> Flags:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from math import ceil
 from typing import NamedTuple
 
@@ -11,9 +12,15 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_columns import (
+    Measured,
+    SignalColumn,
+    SignalColumns,
+    SignalValues,
+)
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import distinct
 
 _HAIR = 1e-6
@@ -42,18 +49,18 @@ def settled(
 ) -> SignalColumns:
     """The signals of drives without values shorter than their word's least duration (s).
 
-    Such a value between two equal ones becomes theirs, and no better known than they are. At the
-    ends of a recording, and where others come or go (are not ``there``, a row each, before or
-    after), it is unknown: it may be noise or last.
+    Such a value between two equal ones becomes theirs, and no better known than they are; so what
+    is possible for a shorter time is not, and what is not sure for a shorter time is. At the ends
+    of a recording, and where others come or go (are not ``there``, a row each, before or after), it
+    is unknown: it may be noise or last.
     """
     least = {name: fewest_states(seconds, step_s) for name, seconds in least_s.items()}
-    unknown = dict(signals.unknown)
     comes = None if there is None else _coming_or_going(there, spans)
     world, about = (
-        {**columns, **_changed(columns, least, unknown, spans, parts)}
-        for columns, parts in ((signals.world, None), (signals.about, comes))
+        {**own, **_changed(own, least, spans, parts)}
+        for own, parts in ((signals.world, None), (signals.about, comes))
     )
-    return signals._replace(world=world, about=about, unknown=unknown)
+    return signals._replace(world=world, about=about)
 
 
 def agreeing(signals: SignalColumns) -> SignalColumns:
@@ -61,62 +68,80 @@ def agreeing(signals: SignalColumns) -> SignalColumns:
 
     Each may have been settled by itself, or found by a measure of its own.
     """
-    world, about, unknown = dict(signals.world), dict(signals.about), dict(signals.unknown)
-    faults = dict(signals.faults)
+    world, about, faults = dict(signals.world), dict(signals.about), dict(signals.faults)
     for name, stronger in _IMPLIED.items():
         # It may hold where what implies it would be true
         for other in faults.keys() & stronger if name in world or name in about else ():
             faults[name] = faults[other]
-        for columns in (world, about):
-            for other in stronger if name in columns else ():
-                if other in columns:
-                    sure = columns[other] & ~unknown.get(other, np.False_)
-                    columns[name] = columns[name] | sure
-                    if name in unknown:
-                        unknown[name] = unknown[name] & ~sure
-    return signals._replace(world=world, about=about, unknown=unknown, faults=faults)
+        for own in (world, about):
+            for other in stronger if name in own else ():
+                if other in own:
+                    own[name] = _truth(own[name]) | Truth.known(_truth(own[other]).sure)
+    return signals._replace(world=world, about=about, faults=faults)
+
+
+def _truth(values: SignalValues) -> Truth:
+    assert isinstance(values, Truth)
+    return values
 
 
 def _changed(
-    columns: Mapping[str, SignalColumn],
+    signals: Mapping[str, SignalValues],
     least: Mapping[str, int],
-    unknown: dict[str, Flags],
     spans: EndToEnd,
     parts: Flags | None,
-) -> dict[str, SignalColumn]:
-    """The columns that are changed by settling, with their new values.
-
-    Where these or other columns become unknown, ``unknown`` is extended.
-    """
-    changed: dict[str, SignalColumn] = {}
-    for names in _alike(columns, least):
-        before = np.array([columns[name] for name in names])
-        after = without_blips(before, least[names[0]], spans, parts)
-        brief = _brief_at_ends(after, least[names[0]], spans)
+) -> dict[str, SignalValues]:
+    """The signals that settling changes. Truth is settled as what is sure and what is possible."""
+    changed: dict[str, dict[int, tuple[SignalColumn, Flags]]] = {}
+    for own in _alike(signals, least):
+        before = np.array([column for _, _, column in own])
+        states = least[own[0][0]]
+        after = without_blips(before, states, spans, parts)
+        brief = _brief_at_ends(after, states, spans)
         if parts is not None:
-            brief |= _brief_beside(after, least[names[0]], spans, parts)
-        for number, name in enumerate(names):
-            if after is not before and (blips := after[number] != before[number]).any():
-                changed[name] = after[number]
-                if (flags := unknown.get(name)) is not None:
-                    unknown[name] = flags | _next_to(blips & ~flags, flags, spans)
-            if brief[number].any():
-                unknown[name] = brief[number] | unknown.get(name, False)
-    return changed
+            brief |= _brief_beside(after, states, spans, parts)
+        for number, (name, half, column) in enumerate(own):
+            if brief[number].any() or (after is not before and (after[number] != column).any()):
+                changed.setdefault(name, {})[half] = after[number], brief[number]
+    return {name: _settled(signals[name], halves, spans) for name, halves in changed.items()}
+
+
+def _settled(
+    values: SignalValues, changed: Mapping[int, tuple[SignalColumn, Flags]], spans: EndToEnd
+) -> SignalValues:
+    """Values with those of their columns that have changed, unknown where these are brief."""
+    if isinstance(values, Truth):
+        sure, brief = changed.get(0, (values.sure, np.False_))
+        possible, may_end = changed.get(0 if values.is_known else 1, (values.possible, np.False_))
+        return Truth(sure & ~brief, possible | may_end)
+    after, brief = changed[0]
+    if values.unknown is not None:
+        blips = (after != values.values) & ~values.unknown
+        brief = brief | values.unknown | _next_to(blips, values.unknown, spans)
+    return replace(values, values=after, unknown=brief)
 
 
 def _alike(
-    columns: Mapping[str, SignalColumn], least: Mapping[str, int]
-) -> Iterable[Sequence[str]]:
-    """The names of columns with a least number of states, grouped by type and number.
+    signals: Mapping[str, SignalValues], least: Mapping[str, int]
+) -> Iterable[Sequence[tuple[str, int, SignalColumn]]]:
+    """Columns with a least number of states, by name and half, grouped by type and that number.
 
     Without columns that are never true, since no value interrupts them.
     """
-    groups: dict[object, list[str]] = {}
-    for name, column in columns.items():
-        if least.get(name, 1) > 1 and column.any():
-            groups.setdefault((column.dtype, least[name]), []).append(name)
+    groups: dict[object, list[tuple[str, int, SignalColumn]]] = {}
+    for name, values in signals.items():
+        if least.get(name, 1) > 1:
+            for half, column in enumerate(_columns(values)):
+                if column.any():
+                    key = column.dtype, least[name]
+                    groups.setdefault(key, []).append((name, half, column))
     return groups.values()
+
+
+def _columns(values: SignalValues) -> Sequence[SignalColumn]:
+    if isinstance(values, Measured):
+        return (values.values,)
+    return (values.sure,) if values.is_known else (values.sure, values.possible)
 
 
 def _next_to(changed: Flags, flags: Flags, spans: EndToEnd) -> Flags:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
@@ -11,6 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Flags
 from rulec.diagnostics import RulecError
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import are_new
 
 SignalColumn = NDArray[Any]
@@ -18,6 +21,58 @@ Bounds: TypeAlias = tuple[SignalColumn, SignalColumn]
 
 SignalNames: TypeAlias = frozenset[str] | None
 """The names of the signals that are read; None means all."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Measured:
+    """Numbers or texts as they were measured.
+
+    ``unknown``: where there is no value. ``bounds``: the least and the greatest possible number, by
+    the tolerances of its source. ``texts``: the texts that values index. All arrays have one shape.
+    """
+
+    values: SignalColumn
+    unknown: Flags | None = None
+    bounds: Bounds | None = None
+    texts: Sequence[str] | None = None
+
+    def each(self, change: Callable[[SignalColumn], SignalColumn]) -> Measured:
+        """The same with all arrays changed."""
+        unknown, bounds = self.unknown, self.bounds
+        return Measured(
+            change(self.values),
+            None if unknown is None else change(unknown),
+            None if bounds is None else (change(bounds[0]), change(bounds[1])),
+            self.texts,
+        )
+
+    def unknown_at(self, unknown: Flags) -> Measured:
+        """The same values, but unknown where ``unknown``, too."""
+        known = self.unknown
+        return replace(self, unknown=unknown if known is None else known | unknown)
+
+
+SignalValues: TypeAlias = Truth | Measured
+"""What a signal is: whether something holds, or a number or a text, wherever that is known."""
+
+
+def signal_values(values: SignalValues | SignalColumn) -> SignalValues:
+    """Values that are known everywhere, if given as an array."""
+    if not isinstance(values, np.ndarray):
+        return values
+    return Truth.known(values) if values.dtype == bool else Measured(values)
+
+
+def unknown_flags(values: SignalValues) -> Flags | None:
+    """Where values are unknown; None if nowhere, by their making."""
+    if isinstance(values, Measured):
+        return values.unknown
+    return None if values.is_known else values.unknown
+
+
+def column_of(values: SignalValues) -> SignalColumn:
+    """The values as one array, with any value where they are unknown."""
+    return values.values if isinstance(values, Measured) else values.sure
 
 
 _NONE: Mapping[str, Any] = MappingProxyType({})
@@ -29,59 +84,59 @@ class SignalColumns(NamedTuple):
     ``world``: one value per state. ``about``: one row of values per participant, or only the values
     of the ``presence_cells`` one after the other.
 
-    ``unknown``: where a signal has no value, in the shape of its own array. ``only``: the
-    participants that a signal about objects applies to. ``bounds``: the least and the greatest
-    possible value of a measured number, by the tolerances of its source, in the shape of its own
-    array. ``texts``: the texts that a signal's values index. ``whom``: the ids of the participants
-    that cause the value of a signal of the world, a tuple per state. ``faults``: the signals that a
-    fault of rulec has cost.
+    ``only``: the participants that a signal about objects applies to. ``whom``: the ids of the
+    participants that cause the value of a signal of the world, a tuple per state. ``faults``: the
+    signals that a fault of rulec has cost.
     """
 
-    world: Mapping[str, SignalColumn] = _NONE
-    about: Mapping[str, SignalColumn] = _NONE
-    unknown: Mapping[str, Flags] = _NONE
+    world: Mapping[str, SignalValues] = _NONE
+    about: Mapping[str, SignalValues] = _NONE
     only: Mapping[str, Flags] = _NONE
-    bounds: Mapping[str, Bounds] = _NONE
-    texts: Mapping[str, Sequence[str]] = _NONE
     whom: Mapping[str, SignalColumn] = _NONE
     faults: Mapping[str, RulecError] = _NONE
-
-    def values(self, name: str) -> SignalColumn:
-        """The values of a signal, as texts if they are indices of texts."""
-        column = self.world[name] if name in self.world else self.about[name]
-        return np.array(self.texts[name])[column] if name in self.texts else column
 
     def __or__(self, other: SignalColumns) -> SignalColumns:
         return together((self, other))
 
-
-class WorldSignal(NamedTuple):
-    """A signal of the world alone, with what ``SignalColumns`` have of it by its name."""
-
-    world: SignalColumn
-    unknown: Flags | None = None
-    bounds: Bounds | None = None
-    texts: Sequence[str] | None = None
-    whom: SignalColumn | None = None
+    def each(self, change: Callable[[str, SignalValues], SignalValues]) -> SignalColumns:
+        """The signals with changed values, by their names."""
+        world, about = (
+            {name: change(name, values) for name, values in signals.items()}
+            for signals in (self.world, self.about)
+        )
+        return self._replace(world=world, about=about)
 
 
-class ObjectSignal(NamedTuple):
-    """A signal of objects alone, with what ``SignalColumns`` have of it by its name."""
+def world_signals(**signals: SignalValues | SignalColumn) -> SignalColumns:
+    """Signals of the world by their names."""
+    return SignalColumns({name: signal_values(values) for name, values in signals.items()})
 
-    about: SignalColumn
-    unknown: Flags | None = None
-    bounds: Bounds | None = None
-    texts: Sequence[str] | None = None
+
+class Caused(NamedTuple):
+    """The values of a signal of the world, and ``whom`` as in ``SignalColumns``."""
+
+    values: Truth
+    whom: SignalColumn
+
+
+class OfObjects(NamedTuple):
+    """The values of a signal about objects, and ``only`` as in ``SignalColumns``."""
+
+    values: SignalValues | SignalColumn
     only: Flags | None = None
 
 
-OneSignal: TypeAlias = WorldSignal | ObjectSignal
+OneSignal: TypeAlias = SignalValues | SignalColumn | Caused | OfObjects
 
 
 def named_signal(name: str, signal: OneSignal) -> SignalColumns:
     """A signal under its name."""
-    own = signal._asdict().items()
-    return SignalColumns(**{kind: {name: part} for kind, part in own if part is not None})
+    if isinstance(signal, Caused):
+        return SignalColumns({name: signal.values}, whom={name: signal.whom})
+    if isinstance(signal, OfObjects):
+        only = _NONE if signal.only is None else {name: signal.only}
+        return SignalColumns(about={name: signal_values(signal.values)}, only=only)
+    return SignalColumns({name: signal_values(signal)})
 
 
 def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> SignalColumns:
@@ -99,30 +154,48 @@ def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> Signa
 
 
 def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
-    """The signals of drives with the same participants, end to end; all supply the same names."""
+    """The signals of drives with the same participants, end to end; all supply the same names.
+
+    No part has numbers with bounds.
+    """
 
     def joined(kind: str) -> dict[str, Any]:
-        columns = [getattr(part, kind) for part in parts]
-        names = dict.fromkeys(name for own in columns for name in own)
-        return {name: np.concatenate([own[name] for own in columns], axis=-1) for name in names}
+        return {
+            name: _laid_end_to_end([getattr(part, kind)[name] for part in parts])
+            for name in getattr(parts[0], kind)
+        }
 
-    bounds = {name: (low, high) for name, (low, high) in joined("bounds").items()}
-    world, about, unknown, whom = map(joined, ("world", "about", "unknown", "whom"))
-    only, texts = parts[0].only, parts[0].texts
-    return SignalColumns(world, about, unknown, only=only, bounds=bounds, texts=texts, whom=whom)
+    world, about, whom = map(joined, ("world", "about", "whom"))
+    return SignalColumns(world, about, only=parts[0].only, whom=whom)
+
+
+def _laid_end_to_end(parts: Sequence[Any]) -> Any:
+    first, join = parts[0], partial(np.concatenate, axis=-1)
+    if isinstance(first, Truth):
+        if all(part.is_known for part in parts):
+            return Truth.known(join([part.sure for part in parts]))
+        return Truth(*(join([getattr(part, half) for part in parts]) for half in _HALVES))
+    if isinstance(first, Measured):
+        values = join([part.values for part in parts])
+        flags = [np.zeros(x.values.shape, bool) if x.unknown is None else x.unknown for x in parts]
+        return Measured(values, join(flags), texts=first.texts)
+    return join(parts)
+
+
+_HALVES = ("sure", "possible")
 
 
 def known_only(signals: SignalColumns, names: frozenset[str]) -> SignalColumns:
     """The signals with values only for some names, and all others unknown."""
-    columns = {**signals.world, **signals.about}
-    unknown = {
-        name: signals.unknown.get(name, np.zeros(column.shape, dtype=bool))
-        if name in names
-        else np.ones(column.shape, dtype=bool)
-        for name, column in columns.items()
-    }
-    bounds = {name: ends for name, ends in signals.bounds.items() if name in names}
-    return signals._replace(unknown=unknown, bounds=bounds)
+
+    def known(name: str, values: SignalValues) -> SignalValues:
+        if name in names:
+            return values
+        if isinstance(values, Measured):
+            values = replace(values, bounds=None)
+        return values.unknown_at(np.ones(column_of(values).shape, dtype=bool))
+
+    return signals.each(known)
 
 
 def unknown_in(
@@ -130,31 +203,31 @@ def unknown_in(
 ) -> SignalColumns:
     """The signals, unknown in some states but for some names; ``by_cell``: in presence cells."""
 
-    def masked(name: str, column: SignalColumn) -> Flags:
+    def masked(name: str, values: SignalValues) -> SignalValues:
+        if name in names:
+            return values
+        column = column_of(values)
         flags = states if name in signals.world or column.ndim > 1 else by_cell
-        known = signals.unknown.get(name)
-        found: Flags = np.broadcast_to(flags, column.shape)
-        return found if known is None else known | found
+        return values.unknown_at(np.broadcast_to(flags, column.shape))
 
-    columns = {**signals.world, **signals.about}
-    unknown = {name: masked(name, own) for name, own in columns.items() if name not in names}
-    return signals._replace(unknown={**signals.unknown, **unknown})
+    return signals.each(masked)
 
 
 def unknown_where_unlike(signals: SignalColumns, others: SignalColumns) -> SignalColumns:
     """The signals, unknown where others have another value or none."""
-    columns, theirs = {**signals.world, **signals.about}, {**others.world, **others.about}
-    unknown = dict(signals.unknown)
-    signals = signals._replace(faults={**signals.faults, **others.faults})
-    for name, column in columns.items():
-        if name not in theirs or theirs[name].shape != column.shape:
-            continue
-        unlike = column != theirs[name]
-        if name in others.unknown:
-            unlike = unlike | others.unknown[name]
-        if unlike.any():
-            unknown[name] = unlike | unknown[name] if name in unknown else unlike
-    return signals._replace(unknown=unknown)
+    theirs = {**others.world, **others.about}
+
+    def alike(name: str, values: SignalValues) -> SignalValues:
+        other = theirs.get(name)
+        if other is None or column_of(other).shape != column_of(values).shape:
+            return values
+        if isinstance(values, Truth) and isinstance(other, Truth):
+            return Truth(values.sure & other.sure, values.possible | other.possible)
+        unlike = column_of(values) != column_of(other)
+        lacks = unknown_flags(other)
+        return values.unknown_at(unlike if lacks is None else unlike | lacks)
+
+    return signals.each(alike)._replace(faults={**signals.faults, **others.faults})
 
 
 def ids_by_state(flags: Flags, ids: Sequence[str]) -> SignalColumn:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import wraps
 from typing import TypeAlias
 
 from rulec.diagnostics import named
 from rulec.diagnostics.fault_messages import fault_of
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.signal_columns import (
+    OfObjects,
     OneSignal,
+    SignalColumn,
     SignalColumns,
     SignalNames,
+    SignalValues,
     named_signal,
     together,
 )
@@ -20,6 +24,20 @@ _Pass: TypeAlias = Callable[[DriveContext], SignalColumns | OneSignal | None]
 
 Passes: TypeAlias = Mapping[str | tuple[str, ...], _Pass]
 """Names of signals -> the function that provides exactly these; None if the recording does not."""
+
+
+def about(
+    values_of: Callable[[DriveContext], SignalValues | SignalColumn | None],
+) -> Callable[[DriveContext], OfObjects | None]:
+    """A function whose values are a signal about objects."""
+
+    @wraps(values_of)
+    def found(context: DriveContext) -> OfObjects | None:
+        values = values_of(context)
+        return None if values is None else OfObjects(values)
+
+    return found
+
 
 _MOST_READERS = 1 << 6
 """Most choices of names whose functions are kept; beyond this all are dropped."""

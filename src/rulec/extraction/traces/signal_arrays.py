@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,10 +11,19 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_columns import (
+    Measured,
+    SignalColumn,
+    SignalColumns,
+    SignalValues,
+    column_of,
+    signal_values,
+    unknown_flags,
+)
 from rulec.scenario.paper_words import PAPER_SURFACE
 from rulec.trace import Value
 from rulec.trace.end_to_end import EndToEnd, UnlikeDrivesError
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_columns import smallest_unsigned
 from rulec.trace.vocabulary_projection import fits, is_about, known_type
@@ -40,20 +49,16 @@ class WrittenPresences:
     kept: NDArray[intp] | None
 
 
-@dataclass(frozen=True, slots=True)
-class WrittenSignals:
-    """Signals in columns; values that are texts are stored as indices into their ``texts``."""
+_Texts = Mapping[str, tuple[str, ...]]
+"""The texts that a signal's written values index."""
 
-    columns: SignalColumns
-    texts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
-    def kinds(self) -> dict[str, type]:
-        """The Python types of the signals' values."""
-        columns = {**self.columns.world, **self.columns.about}
-        return {
-            name: str if name in self.texts else _KINDS[column.dtype.kind]
-            for name, column in columns.items()
-        }
+def kinds_of(signals: SignalColumns, texts: _Texts) -> dict[str, type]:
+    """The Python types of written signals' values."""
+    return {
+        name: str if name in texts else _KINDS[column_of(values).dtype.kind]
+        for name, values in {**signals.world, **signals.about}.items()
+    }
 
 
 def written(
@@ -62,8 +67,8 @@ def written(
     vocabulary: Vocabulary | None,
     names: frozenset[str] | None,
     spans: EndToEnd,
-) -> WrittenSignals:
-    """The signals that a vocabulary declares, optionally only those in ``names``.
+) -> tuple[SignalColumns, _Texts]:
+    """The signals that a vocabulary declares, optionally only those in ``names``, and their texts.
 
     ``types`` are the objects' types, one row per object, the most specific first. Raises
     UnlikeDrivesError if the drives do not all supply the same signals.
@@ -74,20 +79,21 @@ def written(
     known = {own: known_type(own, vocabulary) for own in {tuple(row) for row in types}}
     own_types = [known[tuple(row)] for row in types]
     suits_of: dict[tuple[str, ...], Flags] = {}
-    world, about, only = {}, {}, dict(signals.only)
-    texts: dict[str, tuple[str, ...]] = {}
+    world: dict[str, SignalValues] = {}
+    about: dict[str, SignalValues] = {}
+    only, texts = dict(signals.only), dict[str, tuple[str, ...]]()
     for name, declaration in vocabulary.declarations.items():
         if names is not None and name not in names:
             continue
         if name in signals.world and not declaration.parameters:
-            column = _in_paper_words(name, signals.world[name], declaration)
-            numbers = _numbers(name, column, signals, declaration, spans)
-            if numbers is not None:
-                world[name] = numbers
+            values = _in_paper_words(name, signals.world[name], declaration)
+            places = _in_places(name, values, declaration, spans)
+            if places is not None:
+                world[name] = places
         if name in signals.about and len(declaration.parameters) == 1:
-            numbers = _numbers(name, signals.about[name], signals, declaration, spans)
-            if numbers is not None:
-                about[name] = numbers
+            places = _in_places(name, signals.about[name], declaration, spans)
+            if places is not None:
+                about[name] = places
                 suits = suits_of.get(declaration.parameters)
                 if suits is None:
                     fit = {own: is_about(declaration, own, vocabulary) for own in set(own_types)}
@@ -96,45 +102,42 @@ def written(
                 only[name] = suits & only[name] if name in only else suits
         if isinstance(declaration, Enumeration) and (name in world or name in about):
             texts[name] = declaration.values
-    return WrittenSignals(signals._replace(world=world, about=about, only=only), texts)
+    return signals._replace(world=world, about=about, only=only), texts
 
 
-def _all(signals: SignalColumns) -> WrittenSignals:
+def _all(signals: SignalColumns) -> tuple[SignalColumns, _Texts]:
     texts: dict[str, tuple[str, ...]] = {}
 
-    def numbers(name: str) -> SignalColumn:
-        column = signals.values(name)
+    def in_places(name: str, values: SignalValues) -> SignalValues:
+        if isinstance(values, Truth):
+            return values
+        column = values.values
+        if values.texts is not None:
+            column = np.array(values.texts)[column]
         if column.dtype.kind != "U":
-            return column
+            return values
         found, places = np.unique(column, return_inverse=True)
         texts[name] = tuple(found.tolist())
-        return places.reshape(column.shape)
+        return Measured(places.reshape(column.shape), values.unknown)
 
-    world, about = (
-        {name: numbers(name) for name in columns} for columns in (signals.world, signals.about)
-    )
-    return WrittenSignals(signals._replace(world=world, about=about), texts)
+    return signals.each(in_places), texts
 
 
-def _numbers(
-    name: str,
-    column: SignalColumn,
-    signals: SignalColumns,
-    declaration: Declaration,
-    spans: EndToEnd,
-) -> SignalColumn | None:
-    """A column, with texts as indices into the declared values; None if some value does not fit."""
-    texts = signals.texts.get(name)
-    if isinstance(declaration, Signal) and texts is None and column.dtype == bool:
-        return column
+def _in_places(
+    name: str, values: SignalValues, declaration: Declaration, spans: EndToEnd
+) -> SignalValues | None:
+    """Values with texts as indices into the declared ones; None if some value does not fit."""
+    if isinstance(values, Truth):
+        return values if isinstance(declaration, Signal) else None
+    column, texts = values.values, values.texts
     if not isinstance(declaration, Enumeration) or (texts is None and column.dtype.kind != "U"):
         # All values that are not texts have the same type
         fit = texts is None and fits(name, column.flat[:1].tolist(), declaration)
-        return column if fit else None
+        return values if fit else None
     n_values = len(declaration.values)
     dtype = smallest_unsigned(n_values + 1)
     if texts is not None and tuple(texts) == declaration.values:
-        return column.astype(dtype, copy=False)
+        return replace(values, values=column.astype(dtype, copy=False))
     if texts is None:
         places = _places_of_texts(column, declaration.values).astype(dtype)
     else:
@@ -143,14 +146,14 @@ def _numbers(
         places = table.take(column)
     strange = places == n_values
     if strange.any():
-        unknown = signals.unknown.get(name, np.zeros_like(strange))
+        unknown = np.zeros_like(strange) if values.unknown is None else values.unknown
         if spans.n_drives > 1 and strange.ndim > 1:
             raise UnlikeDrivesError  # perhaps: objects far away in a drive have no values in it
         told = [_is_told(strange[..., own], unknown[..., own]) for own in spans.slices]
         if not spans.agreed(told):
             return None
         places[strange] = 0
-    return places
+    return replace(values, values=places)
 
 
 def _places_of_texts(column: SignalColumn, values: Sequence[str]) -> NDArray[intp]:
@@ -171,81 +174,82 @@ def _is_told(strange: Flags, unknown: Flags) -> bool:
     return not strange.any() or not (unknown.all() or (strange & ~unknown).any())
 
 
-def _in_paper_words(name: str, column: SignalColumn, declaration: Declaration) -> SignalColumn:
+def _in_paper_words(name: str, values: SignalValues, declaration: Declaration) -> SignalValues:
     """Surfaces in the paper's two words, for vocabularies that declare only these."""
     if name != "surface" or not isinstance(declaration, Enumeration):
-        return column
+        return values
     if not set(PAPER_SURFACE.values()).issuperset(declaration.values):
-        return column
-    return np.array([PAPER_SURFACE.get(surface, "R_cw") for surface in column.tolist()])
+        return values
+    assert isinstance(values, Measured)
+    words = [PAPER_SURFACE.get(surface, "R_cw") for surface in values.values.tolist()]
+    return replace(values, values=np.array(words))
 
 
 def with_assumed(
-    signals: WrittenSignals, assumed: Mapping[str, Value], states: int
-) -> WrittenSignals:
+    signals: SignalColumns, texts: _Texts, assumed: Mapping[str, Value], states: int
+) -> tuple[SignalColumns, _Texts]:
     """The signals with the assumed values in every state, whatever the recording contains."""
     if not assumed:
-        return signals
-    columns = signals.columns
-    texts = {name: own for name, own in signals.texts.items() if name not in assumed}
+        return signals, texts
+    texts = {name: own for name, own in texts.items() if name not in assumed}
     texts |= {name: (value,) for name, value in assumed.items() if isinstance(value, str)}
     values = {
-        name: np.full(states, 0 if isinstance(value, str) else value)
+        name: signal_values(np.full(states, 0 if isinstance(value, str) else value))
         for name, value in assumed.items()
     }
-    known = columns._replace(
-        world={**columns.world, **values},
-        unknown={name: own for name, own in columns.unknown.items() if name not in assumed},
-        bounds={name: own for name, own in columns.bounds.items() if name not in assumed},
-        faults={name: own for name, own in columns.faults.items() if name not in assumed},
-    )
-    return WrittenSignals(known, texts)
+    faults = {name: own for name, own in signals.faults.items() if name not in assumed}
+    return signals._replace(world={**signals.world, **values}, faults=faults), texts
 
 
-def with_likeliest(signals: WrittenSignals, vocabulary: Vocabulary) -> WrittenSignals:
+def with_likeliest(signals: SignalColumns, vocabulary: Vocabulary) -> SignalColumns:
     """The signals with measured values in place of unknown ones that have no default."""
     declared = vocabulary.declarations
-    unknown = {
-        name: own
-        for name, own in signals.columns.unknown.items()
-        if name not in declared or declared[name].default is not None
-    }
-    return replace(signals, columns=signals.columns._replace(unknown=unknown))
+
+    def likeliest(name: str, values: SignalValues) -> SignalValues:
+        if name not in declared or declared[name].default is not None:
+            return values
+        return (
+            Truth.known(values.sure) if isinstance(values, Truth) else replace(values, unknown=None)
+        )
+
+    return signals.each(likeliest)
 
 
 def signal_parts(
-    signals: WrittenSignals, present: WrittenPresences, spans: EndToEnd, *, defaults: bool
+    columns: SignalColumns,
+    texts: _Texts,
+    present: WrittenPresences,
+    spans: EndToEnd,
+    *,
+    defaults: bool,
 ) -> list[dict[str, Any]]:
     """The arguments for traces in arrays that depend on signals, one mapping per drive.
 
     With ``defaults`` unknown values are left out, and numbers are as measured.
     """
-    columns, ranges = signals.columns, present.ranges
+    ranges = present.ranges
     lengths = ranges[:, 1] - ranges[:, 0] + 1
     bounds = np.append(0, lengths.cumsum())[np.array(present.bounds)].tolist()
     never = np.zeros(len(present.cells), dtype=bool)
 
-    def gathered(name: str, column: SignalColumn) -> SignalColumn:
-        """A signal's values end to end: of the world, or of the objects present."""
-        if name in columns.world:
-            return column
+    def gathered(column: SignalColumn) -> SignalColumn:
+        """The values of the objects present, end to end."""
         if column.ndim == 1:
             return column if present.kept is None else column.take(present.kept)
         # Many signals are true of no object: checking this is faster than gathering values
         is_never = column.dtype == bool and not np.count_nonzero(column)
         return never if is_never else column.take(present.cells)
 
-    world = {name: gathered(name, own) for name, own in columns.world.items()}
-    about = {name: gathered(name, own) for name, own in columns.about.items()}
-    names = world.keys() | about.keys()
-    unknown = {x: gathered(x, own) for x, own in columns.unknown.items() if x in names}
+    about = {name: values.each(gathered) for name, values in columns.about.items()}
+    every: dict[str, SignalValues] = {**about, **columns.world}
+    unknown = {x: flags for x, own in every.items() if (flags := unknown_flags(own)) is not None}
     intervals = {
-        x: (gathered(x, low), gathered(x, high))
-        for x, (low, high) in columns.bounds.items()
-        if x in names
+        name: own.bounds
+        for name, own in every.items()
+        if isinstance(own, Measured) and own.bounds is not None
     }
     only = {name: flags[present.rows] for name, flags in columns.only.items() if name in about}
-    about_names = frozenset(name for name in names if name not in columns.world)
+    about_names = frozenset(every.keys() - columns.world.keys())
     nothing: dict[str, SignalColumn] = {}
     is_one, states_of = spans.n_drives == 1, spans.slices
     cells_of = list(map(slice, bounds[:-1], bounds[1:]))
@@ -253,13 +257,16 @@ def signal_parts(
     def part(values: Mapping[str, Any], k: int) -> Mapping[str, Any]:
         return values if is_one else SharedColumns(values, about_names, states_of[k], cells_of[k])
 
+    world, of_objects = (
+        {name: column_of(values) for name, values in own.items()} for own in (columns.world, about)
+    )
     own_objects = list(map(slice, present.bounds[:-1], present.bounds[1:]))
     return [
         {
             "spans": ranges[own],
             "world": part(world, k),
-            "about": part(about, k),
-            "texts": signals.texts,
+            "about": part(of_objects, k),
+            "texts": texts,
             "unknown": nothing if defaults else part(unknown, k),
             "absent": part(unknown, k) if defaults else nothing,
             "bounds": {} if defaults else part(intervals, k),

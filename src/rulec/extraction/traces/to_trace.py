@@ -50,7 +50,7 @@ from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.traces.recorded_drive import DecidedBy, Drive, DrivePlaces
 from rulec.extraction.traces.signal_arrays import (
     WrittenPresences,
-    WrittenSignals,
+    kinds_of,
     signal_parts,
     with_assumed,
     with_likeliest,
@@ -167,11 +167,11 @@ def to_traces(
         by_cell = presence_cells(context).of(backs)
         signals = unknown_in(signals, backs, by_cell, _WITHOUT_DIRECTION)
     types = [body.object_types for body in context.tracks.participants]
-    chosen = written(signals, types, writer.vocabulary, writer.names, spans)
-    chosen = with_assumed(chosen, writer.assumed, context.states)
+    chosen, texts = written(signals, types, writer.vocabulary, writer.names, spans)
+    chosen, texts = with_assumed(chosen, texts, writer.assumed, context.states)
     if writer.defaults and writer.vocabulary is not None:
         chosen = with_likeliest(chosen, writer.vocabulary)
-    kinds = chosen.kinds()
+    kinds = kinds_of(chosen, texts)
     vocabulary = writer.vocabulary
     told: frozenset[str] | None = None
     if not writer.defaults:
@@ -182,7 +182,7 @@ def to_traces(
             told |= told_types(context.recording.form, vocabulary)
     kind_of = [kind[0] if vocabulary is None else known_type(kind, vocabulary) for kind in types]
     present, objects = _objects(context, kind_of)
-    parts = signal_parts(chosen, present, spans, defaults=writer.defaults)
+    parts = signal_parts(chosen, texts, present, spans, defaults=writer.defaults)
     step_s = context.recording.step_s
     ends: Ending = "complete" if writer.defaults else "cut"
     arrays = [
@@ -249,12 +249,12 @@ def _objects(
 
 def _decided_by(
     context: DriveContext,
-    chosen: WrittenSignals,
+    chosen: SignalColumns,
     present: WrittenPresences,
     objects: Sequence[Mapping[str, str]],
 ) -> list[dict[str, DecidedBy]]:
     """For each drive the numbers that decided its signals."""
-    if "safe_gap" not in chosen.columns.about:
+    if "safe_gap" not in chosen.about:
         return [{} for _ in objects]
     followed, place = safe_gaps(context), context.tolerances.place_m
     found, every = [], present.rows.tolist()

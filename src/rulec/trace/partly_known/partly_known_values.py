@@ -85,6 +85,19 @@ class Number:
     low: Any
     high: Any
 
+    @staticmethod
+    def within(values: Any, error: Any) -> Number:
+        """Numbers that were measured with an error, which may be as large as this."""
+        return Number(values - error, values + error)
+
+    def __gt__(self, other: Any) -> Truth:
+        """Whether they are above a known number, or known numbers."""
+        return Truth(self.low > other, self.high > other)
+
+    def __lt__(self, other: Any) -> Truth:
+        """Whether they are below a known number, or known numbers."""
+        return Truth(self.high < other, self.low < other)
+
     @property
     def unknown(self) -> Any:
         """Where nothing is known of the number."""

@@ -22,11 +22,12 @@ from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import dense_lines
-from rulec.extraction.signals.signal_columns import WorldSignal, ids_by_state
+from rulec.extraction.signals.signal_columns import Caused, ids_by_state
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import RAMPS
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import distinct
 
 _HALF_M = 4.0
@@ -39,14 +40,14 @@ _CRAWLS_MPS = 5.5
 """A vehicle this slow that gains speed sets off, although it has not quite stood."""
 
 
-def being_overtaken(context: DriveContext) -> WorldSignal:
+def being_overtaken(context: DriveContext) -> Caused:
     """Whether a vehicle overtakes ego, and which one.
 
     Unknown where ego may only be slow because it sets off, has had to brake, or has just come here.
     """
     by, open_end = _overtaken(context)
     if not by.any() and not open_end.any():
-        return WorldSignal(open_end, open_end, whom=ids_by_state(by, context.ids))
+        return Caused(Truth.known(open_end).unknown_at(open_end), ids_by_state(by, context.ids))
     # A vehicle about to join gains speed beside others on the lanes that go on; one that leaves may
     # be faster than they are, too (StVO § 7a), and many lanes between ramps serve for both
     on_ramp = own_lanelets(context).flags(lambda at: not at.types.isdisjoint(RAMPS))
@@ -59,10 +60,9 @@ def being_overtaken(context: DriveContext) -> WorldSignal:
     joined = _was(context, elsewhere)
     moot = _sets_off(context) | _recovers(context) | _may_recover(context) | joined | not_told
     # Where all lanes queue, a faster vehicle does not overtake (Vienna, Art. 11(6)(a))
-    return WorldSignal(
-        ~dense & overtaken,
-        ~surely & np.where(overtaken, moot, open_end),
-        whom=ids_by_state(by, context.ids),
+    return Caused(
+        Truth.known(~dense & overtaken).unknown_at(~surely & np.where(overtaken, moot, open_end)),
+        ids_by_state(by, context.ids),
     )
 
 

@@ -21,9 +21,10 @@ from rulec.extraction.signals.conduct.others_lamps import (
     lit_lamps,
 )
 from rulec.extraction.signals.ego_lanelets import own_lanelets, room_beside
-from rulec.extraction.signals.signal_columns import ObjectSignal, WorldSignal, ids_by_state
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.signal_columns import Caused, ids_by_state
+from rulec.extraction.signals.signal_passes import SignalPasses, about
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _OWN = "ego_on_call"
 
@@ -31,7 +32,7 @@ _FACES = -0.5
 """Cosine between the directions of ego's road and of a vehicle that comes the other way on it."""
 
 
-def _emergency_vehicle_near(context: DriveContext) -> WorldSignal:
+def _emergency_vehicle_near(context: DriveContext) -> Caused:
     """Whether an emergency vehicle on call is near.
 
     Unknown for one that stands, does not sound a horn that the recording contains, is not beside
@@ -46,7 +47,7 @@ def _emergency_vehicle_near(context: DriveContext) -> WorldSignal:
     comes: Flags = np.logical_or.reduce(surely)
     if comes.any():
         comes &= ~_may_be_on_call(context)
-    return WorldSignal(comes, perhaps & ~comes, whom=ids_by_state(surely & comes, context.ids))
+    return Caused(Truth(comes, comes | perhaps), ids_by_state(surely & comes, context.ids))
 
 
 @once
@@ -62,7 +63,7 @@ def _surely_near(context: DriveContext) -> Flags:
     return found
 
 
-def _way_cleared(context: DriveContext) -> WorldSignal:
+def _way_cleared(context: DriveContext) -> Flags | Truth:
     """Whether ego stands, or is at an edge of its lane.
 
     Unknown where the vehicles that are near have another lane or are clear of ego sideways: they
@@ -72,11 +73,11 @@ def _way_cleared(context: DriveContext) -> WorldSignal:
     cleared = still | _at_edge(context)
     near = _surely_near(context)
     if not near.any():
-        return WorldSignal(cleared)
+        return cleared
     clear = relations.way_across(context)
     in_way = near & context.in_ego_lane & (clear < context.thresholds.touching_m)
     in_way |= near & (clear < 0)
-    return WorldSignal(cleared, near.any(axis=0) & ~in_way.any(axis=0) & ~cleared)
+    return Truth(cleared, cleared | near.any(axis=0) & ~in_way.any(axis=0))
 
 
 def _at_edge(context: DriveContext) -> Flags:
@@ -84,9 +85,9 @@ def _at_edge(context: DriveContext) -> Flags:
     return (np.minimum(right, left) < edge) & (np.abs(right - left) > edge)
 
 
-def _called(context: DriveContext) -> ObjectSignal:
+def _called(context: DriveContext) -> Truth:
     on_call, not_told = _on_call(context)
-    return ObjectSignal(on_call, not_told)
+    return Truth.known(on_call).unknown_at(not_told)
 
 
 @once
@@ -105,8 +106,9 @@ def _on_call(context: DriveContext) -> tuple[Flags, Flags]:
 def _may_be_on_call(context: DriveContext) -> Flags:
     """Mask of states in which ego may be on call, too: which of the two goes first is unknown."""
     own = lamp_signals(context, frozenset({_OWN}))
-    may_be: Flags = own.world[_OWN] | own.unknown.get(_OWN, np.False_)
-    return may_be
+    truth = own.world[_OWN]
+    assert isinstance(truth, Truth)
+    return truth.possible
 
 
 def _comes_near(context: DriveContext) -> Flags:
@@ -199,7 +201,7 @@ def _is_silent(context: DriveContext, rows: NDArray[intp]) -> Flags:
 called_signals = SignalPasses(
     {
         "emergency_vehicle_near": _emergency_vehicle_near,
-        "on_call": _called,
+        "on_call": about(_called),
         "way_cleared": _way_cleared,
     }
 )

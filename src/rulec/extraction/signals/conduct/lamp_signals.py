@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from rulec.array_types import Flags
 from rulec.extraction.computed_once import once
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
+from rulec.extraction.signals.signal_columns import Measured, SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.recording import Lamp
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _FOG_LAMPS: tuple[tuple[str, Lamp], ...] = (
     ("front_fog_lamps", "front_fog_lamp"),
@@ -20,7 +22,7 @@ FLASH_S = 1.0
 """Flashing lights count as on if they are lit within this time (s)."""
 
 
-def _headlamps(context: DriveContext) -> WorldSignal | None:
+def _headlamps(context: DriveContext) -> Measured | None:
     """The brightest of ego's lamps; without a beam there may be weaker ones, unless it is night.
 
     At night none of those would be enough.
@@ -31,7 +33,7 @@ def _headlamps(context: DriveContext) -> WorldSignal | None:
     lit = ego_lamps(context)
     codes = [2 if "main_beam" in (x or ()) else "dipped_beam" in (x or ()) for x in lit]
     dark = [x is None or not (x & _BEAMS or context.recording.weather.night) for x in lit]
-    return WorldSignal(np.array(codes, dtype=int), np.array(dark, dtype=bool), texts=_HEADLAMPS)
+    return Measured(np.array(codes, dtype=int), np.array(dark, dtype=bool), texts=_HEADLAMPS)
 
 
 def _fog_lamps(context: DriveContext) -> SignalColumns:
@@ -42,26 +44,24 @@ def _fog_lamps(context: DriveContext) -> SignalColumns:
         if context.spans.agreed([ego.lamps and lamp in ego.shows for ego in egos])
     ]
     lit = ego_lamps(context) if told else ()
-    unknown = np.array([x is None for x in lit], dtype=bool)
-    return SignalColumns(
-        {name: np.array([lamp in (x or ()) for x in lit], dtype=bool) for name, lamp in told},
-        unknown={name: unknown for name, _ in told},
-    )
+    untold = np.array([x is None for x in lit], dtype=bool)
+    shown = {name: np.array([lamp in (x or ()) for x in lit], dtype=bool) for name, lamp in told}
+    return SignalColumns({name: Truth(own, own | untold) for name, own in shown.items()})
 
 
-def _ego_on_call(context: DriveContext) -> WorldSignal:
+def _ego_on_call(context: DriveContext) -> Flags | Truth:
     """Ego's blue lights; unknown only for emergency vehicles whose lights are not recorded."""
     egos, spread = context.ego.participants, context.spans.spread
     may_be = spread([ego.type == "priorityVehicle" for ego in egos])
     shows = spread(["blue_light" in ego.shows for ego in egos])
     if not (may_be | shows).any():
-        return WorldSignal(may_be)
+        return may_be
     lit = ego_lamps(context)
     blue = np.array(["blue_light" in (lamps or ()) for lamps in lit], dtype=bool)
     recorded = shows & np.array([lamps is not None for lamps in lit], dtype=bool)
     steps = context.steps_in(FLASH_S)
     flashing = context.spans.within(blue[None], steps, around=True)[0]
-    return WorldSignal(flashing, may_be & ~recorded & ~flashing)
+    return Truth(flashing, flashing | may_be & ~recorded)
 
 
 @once

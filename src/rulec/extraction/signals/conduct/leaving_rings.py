@@ -15,8 +15,9 @@ from rulec.extraction.computed_once import once
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
 from rulec.extraction.signals.map.right_of_way.conflicts import Passing, in_conflict
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumns, column_of
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _CROSSED = "crossed"
 
@@ -29,8 +30,7 @@ def crossed_on_ring(context: DriveContext) -> Flags:
     """
     if not context.surroundings.ring(context.side):
         return np.zeros(context.relevant.shape, dtype=bool)
-    found: Flags = _crossed(context).about[_CROSSED]
-    return found
+    return column_of(_crossed(context).about[_CROSSED])
 
 
 @drive_by_drive
@@ -40,7 +40,7 @@ def _crossed(context: DriveContext) -> SignalColumns:
         for row, column in _in_way_of(context, passage):
             state = min(max(column - context.first_column, 0), context.states - 1)
             crossed[context.tracks.rows == row, state] = True
-    return SignalColumns(about={_CROSSED: crossed})
+    return SignalColumns(about={_CROSSED: Truth.known(crossed)})
 
 
 def _in_way_of(context: DriveContext, own: Passage) -> Iterator[tuple[int, int]]:

@@ -9,11 +9,12 @@ from rulec.extraction.computed_once import once
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.u_turns import may_turn_round, swings_round, u_turns
 from rulec.extraction.signals.ego_lanelets import beyond_edges, own_lanelets
-from rulec.extraction.signals.signal_columns import WorldSignal
+from rulec.extraction.signals.signal_columns import Measured
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.surroundings import BACKS_MPS
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _SIDES = ("own_side", "oncoming_side", "wrong_way")
 
@@ -29,7 +30,7 @@ _DRIFT_M = 3.0
 """Boxes of standing vehicles drift by less: up to 2.5 m to and fro in Argoverse 2."""
 
 
-def _reversing(context: DriveContext) -> WorldSignal:
+def _reversing(context: DriveContext) -> Truth:
     """Whether ego moves against its heading.
 
     Where headings are derived from places, vehicles are taken to head where their lanes lead: those
@@ -51,7 +52,7 @@ def _reversing(context: DriveContext) -> WorldSignal:
         for number, columns in spans.those(asked):
             unknown[columns] |= against[columns] & (not _tells_headings(context, number, columns))
         unknown |= may_back(context) & ~backs
-    return WorldSignal(backs, unknown)
+    return Truth.known(backs).unknown_at(unknown)
 
 
 def _comes_back_nowhere(context: DriveContext, perhaps: Flags, backs: Flags) -> Flags:
@@ -141,7 +142,7 @@ def may_back(context: DriveContext) -> Flags:
     return found | spans.all(found | ~moves) & spans.any(found)
 
 
-def _driving_side(context: DriveContext) -> WorldSignal:
+def _driving_side(context: DriveContext) -> Measured:
     there, perhaps = oncoming_side(context)
     sides = there.astype(int)
     if perhaps.any():
@@ -149,7 +150,7 @@ def _driving_side(context: DriveContext) -> WorldSignal:
     perhaps = perhaps | may_back(context)
     if context.wrong_way:
         sides, perhaps = np.full_like(sides, _SIDES.index("wrong_way")), perhaps & False
-    return WorldSignal(sides, perhaps, texts=_SIDES)
+    return Measured(sides, perhaps, texts=_SIDES)
 
 
 def _goes_over(context: DriveContext, there: Flags, perhaps: Flags) -> Flags:
@@ -269,11 +270,11 @@ def _on_map(context: DriveContext) -> Flags:
     return on_map
 
 
-def _u_turn(context: DriveContext) -> WorldSignal:
-    return WorldSignal(u_turns(context), may_turn_round(context))
+def _u_turn(context: DriveContext) -> Truth:
+    return Truth.known(u_turns(context)).unknown_at(may_turn_round(context))
 
 
-def _joins_road(context: DriveContext) -> WorldSignal:
+def _joins_road(context: DriveContext) -> Truth:
     """Whether ego drives onto the road from where it stood beside it.
 
     Unknown where ego comes from beside the road at an angle, or is there when first seen, since the
@@ -286,7 +287,7 @@ def _joins_road(context: DriveContext) -> WorldSignal:
     reach, spans = context.steps_in(context.thresholds.setting_off_s), context.spans
     comes = (spans.enters(inside).nonzero()[0] - 1).tolist()
     if not comes:
-        return WorldSignal(joins, perhaps)
+        return Truth.known(joins).unknown_at(perhaps)
     last_inside, last_stood = spans.latest(inside), spans.latest(stands)
     for state in comes:
         left, stood, first = (
@@ -301,7 +302,7 @@ def _joins_road(context: DriveContext) -> WorldSignal:
         swings = swings_round(context) | may_turn_round(context)
         round_ = context.spans.within(swings, reach, around=True)
         perhaps, joins = perhaps | (joins & round_), joins & ~round_
-    return WorldSignal(joins, perhaps & ~joins)
+    return Truth(joins, joins | perhaps)
 
 
 manoeuvre_signals = SignalPasses(

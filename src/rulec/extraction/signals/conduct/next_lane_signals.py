@@ -20,11 +20,11 @@ from rulec.extraction.signals.ego_lanelets import CYCLE_LANE, SHOULDER, own_lane
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
-from rulec.extraction.signals.signal_columns import WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import RAMPS, Lanelet, LaneMark, Side
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import ranges
 
 _SOON_M = 10.0
@@ -61,7 +61,7 @@ _STANDING_CAMERAS = frozenset(
 """Formats of data recorded from above a stretch of road, or invented for one."""
 
 
-def _on_near_lane(context: DriveContext) -> WorldSignal:
+def _on_near_lane(context: DriveContext) -> Truth:
     free, within_error = _near_lane_is_free(context)
     doubtful = _goes_back(context)
     # Rarely needed: an ego in the lane next to the kerb mostly stays there
@@ -70,7 +70,7 @@ def _on_near_lane(context: DriveContext) -> WorldSignal:
     # Maps do not say for which buses a bus lane is, or when; and those that may use it need not
     doubtful |= _is_beside(context, _BUS_LANE)
     unknown = free & doubtful | within_error
-    return WorldSignal(free, unknown)
+    return Truth.known(free).unknown_at(unknown)
 
 
 def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]:
@@ -82,7 +82,7 @@ def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]
     return lane, inside & travel_lanes(context)[np.arange(context.states), lane]
 
 
-def _far_lane_is_free(context: DriveContext) -> WorldSignal:
+def _far_lane_is_free(context: DriveContext) -> Flags:
     """Whether nobody is in the place beside ego on the next far lane, now or soon."""
     lane, there = _next_lane(context, "left" if context.side == "right" else "right")
     cells = _on_lane(context, lane, there.nonzero()[0])
@@ -92,7 +92,7 @@ def _far_lane_is_free(context: DriveContext) -> WorldSignal:
     free: Flags = there.copy()
     beside = station == relations.BESIDE
     free[cells[1][beside | ((station == relations.IN_FRONT_OF) & near)]] = False
-    return WorldSignal(free)
+    return free
 
 
 def _near_lane_is_free(context: DriveContext) -> tuple[Flags, Flags]:

@@ -23,9 +23,9 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
     two_way,
 )
 from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.signal_passes import SignalPasses, about
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _GOES_FIRST = "PRIORITY_OVER_ONCOMING"
 """The sign that gives ego priority where the road is narrow."""
@@ -52,7 +52,7 @@ class _Stay(NamedTuple):
     sure: bool
 
 
-def _holds_up_oncoming(context: DriveContext) -> SignalColumns:
+def _holds_up_oncoming(context: DriveContext) -> Truth:
     held, perhaps = np.zeros((2, *context.relevant.shape), dtype=bool)
     far = sides_beyond_far_edge(context, context.ego_extents)[1][0]
     stays = _stays_over_the_middle(context, far)
@@ -71,8 +71,7 @@ def _holds_up_oncoming(context: DriveContext) -> SignalColumns:
             if found is not None:
                 sure = found and stay.sure and seen == stay.first
                 (held if sure else perhaps)[row, stay.first : stay.end] = True
-    name = "holds_up_oncoming"
-    return SignalColumns(about={name: held}, unknown={name: perhaps & ~held})
+    return Truth(held, held | perhaps)
 
 
 def _stays_over_the_middle(context: DriveContext, far: Floats) -> list[_Stay]:
@@ -200,5 +199,5 @@ def _is_passed(context: DriveContext, row: int, states: slice) -> bool:
     return bool((others.s_min[row, states] < own.s_max[0, states]).any())
 
 
-oncoming_conflicts = SignalPasses({"holds_up_oncoming": _holds_up_oncoming})
+oncoming_conflicts = SignalPasses({"holds_up_oncoming": about(_holds_up_oncoming)})
 """The signal of conflicts with oncoming vehicles while ego is beyond the middle."""

@@ -18,16 +18,16 @@ from rulec.extraction.signals.ego_lanelets import (
     those_on_lanes,
 )
 from rulec.extraction.signals.settling import fewest_states, without_blips
-from rulec.extraction.signals.signal_columns import WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _DRIFT_MPS = 0.2
 """A vehicle with a lower lateral speed keeps its lane."""
 
 
-def _overtaking(context: DriveContext) -> WorldSignal:
+def _overtaking(context: DriveContext) -> Truth:
     """Whether ego overtakes; beyond the road's middle, from its way there until it is back.
 
     Unknown if ego goes there behind a vehicle and back: it may have given up; and where its drive
@@ -45,7 +45,7 @@ def _overtaking(context: DriveContext) -> WorldSignal:
         overtakes = overtakes | goes_round | _meanwhile(context, overtakes, side)
         perhaps = _meanwhile(context, unsure | _close_behind(context), side)
         unsure = unsure | may_go_round | perhaps | _may_come_from_passing(context, side)
-    return WorldSignal(overtakes, unsure & ~overtakes)
+    return Truth(overtakes, overtakes | unsure)
 
 
 def _with_all_that_joins(context: DriveContext, flags: Flags, more: Flags) -> Flags:
@@ -101,7 +101,7 @@ def _close_behind(context: DriveContext) -> Flags:
     return close
 
 
-def _begins_to_overtake(context: DriveContext) -> WorldSignal:
+def _begins_to_overtake(context: DriveContext) -> Truth:
     """Whether ego overtakes within ``parting_s``, so that it is pulling out for that by now.
 
     Unknown where the drive ends before.
@@ -112,7 +112,7 @@ def _begins_to_overtake(context: DriveContext) -> WorldSignal:
     begins, perhaps = (spans.within(flags, horizon) for flags in (overtakes, overtakes | unsure))
     moves_out = np.abs(context.ego_extents.across[0]) > _DRIFT_MPS
     ends = moves_out & (spans.columns + horizon >= spans.end)
-    return WorldSignal(begins, (perhaps | ends) & ~begins)
+    return Truth(begins, begins | perhaps | ends)
 
 
 def _overtakes(context: DriveContext, whom: Flags | bool) -> tuple[Flags, Flags]:

@@ -36,11 +36,11 @@ from rulec.extraction.signals.conduct.braking_causes.traffic_causes import (
 )
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.map.exit_room import waits_for_room
-from rulec.extraction.signals.signal_columns import WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _REACH_S, _GENTLE_MPS2 = 3.0, 4.0
 """A cause to brake is at most this far ahead: the way in ``_REACH_S``, the braking distance at
@@ -63,9 +63,9 @@ _DRIVES_KMH = 30.0
 """A vehicle that is this fast later on has not broken down, nor is it towed."""
 
 
-def _cause_to_brake(context: DriveContext) -> WorldSignal:
+def _cause_to_brake(context: DriveContext) -> Truth:
     caused, unknown = _causes(context)
-    return WorldSignal(caused, unknown)
+    return Truth.known(caused).unknown_at(unknown)
 
 
 @once
@@ -251,7 +251,7 @@ def _all_are_recorded(context: DriveContext) -> bool:
     return "arrivals" in context.recording.complete
 
 
-def _impedes(context: DriveContext) -> WorldSignal:
+def _impedes(context: DriveContext) -> Truth:
     """Whether a vehicle follows ego, which is far below the limit for long without a reason.
 
     A cycle has one: no law asks for more than its rider's strength. A vehicle that gains speed, as
@@ -272,7 +272,7 @@ def _impedes(context: DriveContext) -> WorldSignal:
     since = context.spans.latest(~slower)
     # What was before its drive began is unknown
     for_long = (context.spans.columns - since > steps) | (since < context.spans.first)
-    return WorldSignal(impedes, followed & slower & for_long & ~impedes)
+    return Truth(impedes, impedes | followed & slower & for_long)
 
 
 def _followed(context: DriveContext, slower_mps: float = np.inf) -> Flags:

@@ -28,6 +28,7 @@ from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.recordings.recording import Points
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _BEFORE_M = 8.0
 _STRAIGHT_RAD = np.radians(30.0)
@@ -46,7 +47,7 @@ def _turns_in_way_of(context: DriveContext) -> SignalColumns:
         if least < abs(turned) < np.pi - least and not at_ring:
             for row, (first, last, known) in _conflicts(context, passage):
                 (met if known and passage.sure else unsure)[row, first : last + 1] = True
-    return SignalColumns(about={"turns_in_way_of": met}, unknown={"turns_in_way_of": unsure & ~met})
+    return SignalColumns(about={"turns_in_way_of": Truth(met, met | unsure)})
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,11 +26,12 @@ from rulec.extraction.signals.map.zone_signals import (
     in_turn,
     side_road,
 )
-from rulec.extraction.signals.signal_columns import ObjectSignal
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.signal_columns import Measured, OfObjects
+from rulec.extraction.signals.signal_passes import SignalPasses, about
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import ranges
 
 _STOOD_S = 5.0
@@ -50,7 +51,7 @@ _WALKS_MPS = 1.4
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
 
-def _crossing_use(context: DriveContext) -> ObjectSignal | None:
+def _crossing_use(context: DriveContext) -> OfObjects | None:
     if not crossings_told(context):
         return None
     rows, used = _pedestrians(context), _used_ahead(context)
@@ -62,7 +63,7 @@ def _crossing_use(context: DriveContext) -> ObjectSignal | None:
         own[rows] = np.where(_past_ego(context, rows) | too_late, 0, used)
         unsure[rows] = (may_be | _is_far_off(context, rows)) & (own[rows] > 0)
         unsure[rows] |= _in_doubt(context, own[rows])
-    return ObjectSignal(own, unsure, only=context.tracks.of_type("pedestrian"), texts=_USES)
+    return OfObjects(Measured(own, unsure, texts=_USES), context.tracks.of_type("pedestrian"))
 
 
 def _in_doubt(context: DriveContext, uses: NDArray[intp]) -> Flags:
@@ -76,7 +77,7 @@ def _in_doubt(context: DriveContext, uses: NDArray[intp]) -> Flags:
     return context.spans.within(changes, steps, around=True)
 
 
-def _stopped_for_pedestrian(context: DriveContext) -> ObjectSignal | None:
+def _stopped_for_pedestrian(context: DriveContext) -> OfObjects | None:
     if not crossings_told(context):
         return None
     stopped = np.zeros(context.relevant.shape, dtype=bool)
@@ -87,8 +88,9 @@ def _stopped_for_pedestrian(context: DriveContext) -> ObjectSignal | None:
         waited_for = ((_used_ahead(context) >= least) & context.relevant[rows]).any(axis=0)
         states = waited_for.nonzero()[0]
         stopped[:, states] = _stopped(context, states)
-    return ObjectSignal(
-        stopped, _behind_another(context, stopped), only=context.tracks.of_type("vehicle")
+    return OfObjects(
+        Truth.known(stopped).unknown_at(_behind_another(context, stopped)),
+        context.tracks.of_type("vehicle"),
     )
 
 
@@ -100,7 +102,7 @@ def _is_lit(context: DriveContext) -> Flags:
     return lit
 
 
-def _nearest_to_crossing(context: DriveContext) -> ObjectSignal | None:
+def _nearest_to_crossing(context: DriveContext) -> Truth | None:
     if not crossings_told(context):
         return None
     start, _ = next_crossing(context)
@@ -111,10 +113,10 @@ def _nearest_to_crossing(context: DriveContext) -> ObjectSignal | None:
     place = context.tolerances.place_m
     unsure = np.isfinite(ahead) & ~near & (ahead < nearest + 2 * place)
     unsure |= near & ((np.isfinite(ahead) & (ahead < nearest + 2 * place)).sum(axis=0) > 1)
-    return ObjectSignal(near, unsure)
+    return Truth.known(near).unknown_at(unsure)
 
 
-def _crosses_side_road(context: DriveContext) -> ObjectSignal:
+def _crosses_side_road(context: DriveContext) -> OfObjects:
     """Pedestrians that use the road into which ego turns without being let across by ego.
 
     An ego that waits in the junction until they are across has entered it lawfully. Who drives into
@@ -131,7 +133,7 @@ def _crosses_side_road(context: DriveContext) -> ObjectSignal:
             uses |= in_turn(context) & (context.spans.next_state(uses) < past)
             crosses[rows], unsure[rows] = uses & taken, uses & open_end
     unsure |= at_unknown_way(context, _pedestrians(context))
-    return ObjectSignal(crosses, unsure, only=context.tracks.of_type("pedestrian"))
+    return OfObjects(Truth.known(crosses).unknown_at(unsure), context.tracks.of_type("pedestrian"))
 
 
 def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags, NDArray[intp]]:
@@ -410,7 +412,7 @@ crossing_signals = SignalPasses(
     {
         "crossing_use": _crossing_use,
         "stopped_for_pedestrian": _stopped_for_pedestrian,
-        "nearest_to_crossing": _nearest_to_crossing,
+        "nearest_to_crossing": about(_nearest_to_crossing),
         "crosses_side_road": _crosses_side_road,
     }
 )

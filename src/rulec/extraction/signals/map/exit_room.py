@@ -12,9 +12,10 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.map.level_crossing_signals import level_crossings
 from rulec.extraction.signals.measured_numbers import corner_ahead
-from rulec.extraction.signals.signal_columns import WorldSignal, ids_by_state
+from rulec.extraction.signals.signal_columns import Caused, ids_by_state
 from rulec.extraction.tracks.driven_road import Stretches
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
+from rulec.trace.partly_known.partly_known_values import Truth
 
 ROOM_M = 1.0
 """Distance (m) that a standing vehicle leaves to the one ahead."""
@@ -23,7 +24,7 @@ _AT_PLACE_M = 10.0
 """Ego waits before a place if its front is at most this far (m) from it."""
 
 
-def exit_clear(context: DriveContext) -> WorldSignal:
+def exit_clear(context: DriveContext) -> Caused:
     """Whether ego has room behind the place that it enters; and where that is unknown.
 
     There is none if a vehicle ahead, at walking pace at most while ego stands, leaves too little
@@ -93,10 +94,10 @@ def _places(context: DriveContext) -> Stretches:
     return [*context.road.junctions, *context.road.crossings, *level_crossings(context)]
 
 
-def _room_beyond(
-    context: DriveContext, clear: Flags, unknown: Flags, nearest: Flags
-) -> WorldSignal:
-    return WorldSignal(clear, unknown & clear, whom=ids_by_state(nearest, context.ids))
+def _room_beyond(context: DriveContext, clear: Flags, unknown: Flags, nearest: Flags) -> Caused:
+    return Caused(
+        Truth.known(clear).unknown_at(unknown & clear), ids_by_state(nearest, context.ids)
+    )
 
 
 def _until(context: DriveContext, flags: Flags) -> Flags:

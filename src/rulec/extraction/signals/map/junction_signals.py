@@ -26,11 +26,12 @@ from rulec.extraction.signals.map.stop_lines import (
     passes,
 )
 from rulec.extraction.signals.measured_numbers import own_front
-from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
+from rulec.extraction.signals.signal_columns import Measured, SignalColumns, world_signals
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.driven_road import Stretches, reach_into
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _SLOWEST_MPS = 5.0
 """A vehicle that stands at the end of a drive is assumed to go on this fast."""
@@ -42,8 +43,8 @@ _SWEEPS_M = 10.0
 """The middle of a longer body cuts the corner in a turn."""
 
 
-def _junction_zone(context: DriveContext) -> WorldSignal:
-    return WorldSignal(_at_junctions(context, context.road.junctions))
+def _junction_zone(context: DriveContext) -> Flags:
+    return _at_junctions(context, context.road.junctions)
 
 
 def _at_junctions(context: DriveContext, junctions: Stretches) -> Flags:
@@ -52,12 +53,12 @@ def _at_junctions(context: DriveContext, junctions: Stretches) -> Flags:
     return reach_into(junctions, own.s_min[0], own.s_max[0], context.thresholds.zone_m)
 
 
-def _enters_junction(context: DriveContext) -> WorldSignal:
+def _enters_junction(context: DriveContext) -> Truth:
     enters, may_enter = np.zeros((2, context.states), dtype=bool)
     for start, _ in context.road.junctions:
         enters |= passes(context, start)
         may_enter |= may_have_passed(context, start)
-    return WorldSignal(enters, may_enter)
+    return Truth.known(enters).unknown_at(may_enter)
 
 
 def _turns(context: DriveContext) -> SignalColumns:
@@ -75,9 +76,8 @@ def _turns(context: DriveContext) -> SignalColumns:
     # In a creeping queue it is unknown since when
     perhaps = _within_preparation(context, leaves | unknown, limits.walking_pace_kmh)
     perhaps |= _may_turn_later(context)
-    return SignalColumns(
-        {"turn": turn, "preparing_to_leave": prepares},
-        unknown={"turn": unknown, "preparing_to_leave": perhaps & ~prepares},
+    return world_signals(
+        turn=Measured(turn, unknown), preparing_to_leave=Truth(prepares, prepares | perhaps)
     )
 
 
@@ -91,7 +91,7 @@ def _all_way_stop(context: DriveContext) -> SignalColumns:
         stop = context.surroundings.passages.junctions[passage.junction].all_have_to_stop
         all_stop[approach(context, passage)] = stop is True
         unknown[approach(context, passage)] = stop is None
-    return SignalColumns({"all_way_stop": all_stop}, unknown={"all_way_stop": unknown})
+    return SignalColumns({"all_way_stop": Truth(all_stop, all_stop | unknown)})
 
 
 def _tells_stop_signs(context: DriveContext) -> bool:
@@ -211,7 +211,7 @@ def _time_driven(context: DriveContext, pace_kmh: float) -> Floats:
     return driven
 
 
-def _crosses_stop_line(context: DriveContext) -> WorldSignal | None:
+def _crosses_stop_line(context: DriveContext) -> Truth | None:
     """Whether ego crosses the line of a lanelet with a stop sign; unknown where it perhaps does.
 
     Perhaps if its drive ends while it moves between the places where the line may be, or begins
@@ -227,7 +227,7 @@ def _crosses_stop_line(context: DriveContext) -> WorldSignal | None:
         on_it = (first < front) & (front <= last) & on_lane
         may_cross |= unsure | (ends & on_it & context.ego_moves)
     may_cross |= context.ego_moves & may_hold(context, STOP_SIGNS)
-    return WorldSignal(crosses, may_cross & ~crosses)
+    return Truth(crosses, crosses | may_cross)
 
 
 @once

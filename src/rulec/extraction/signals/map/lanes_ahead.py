@@ -15,11 +15,11 @@ from rulec.extraction.computed_once import once_a_recording, once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
-from rulec.extraction.signals.signal_columns import ObjectSignal
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.at_junctions.junctions import JunctionWay
 from rulec.recordings.recording import Lanelet
 from rulec.scenario.recorded.reference_line import turn
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _BEYOND_M = 1.0
 """This far behind a junction the lanes are those that go on."""
@@ -122,7 +122,7 @@ def _lead(context: DriveContext, ways: Sequence[JunctionWay], turned: float) -> 
     return Leads.BOTH if any(along) else Leads.ELSEWHERE
 
 
-def leads_elsewhere(context: DriveContext) -> ObjectSignal:
+def leads_elsewhere(context: DriveContext) -> Truth:
     """Whether a participant's lane before a junction does not go on along ego's road beyond it.
 
     Where ways from a lane lead there and elsewhere, the way that the participant takes decides; in
@@ -165,7 +165,7 @@ def leads_elsewhere(context: DriveContext) -> ObjectSignal:
             turns_off = _turns_off(context, row, junction)
             elsewhere[row] |= near[row] & both[row] & bool(turns_off)
             unknown[row] |= near[row] & both[row] & (turns_off is None)
-    return ObjectSignal(elsewhere, unknown & ~elsewhere)
+    return Truth(elsewhere, elsewhere | unknown)
 
 
 @once_a_road

@@ -11,10 +11,11 @@ from rulec.array_types import Flags, Floats
 from rulec.extraction.computed_once import once_a_map, once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.stop_lines import may_have_passed
-from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
+from rulec.extraction.signals.signal_columns import SignalColumns, world_signals
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.driven_road import Stretches, reach_into, runs_along
 from rulec.scenario.recorded.route import lanelet_length
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _SIGNS_M = 300.0
 """Signs that warn of a level crossing are at most this far before it: beacons begin at 240 m."""
@@ -30,13 +31,11 @@ def _zones(context: DriveContext) -> SignalColumns:
         enters |= context.spans.enters(front > start)
         may_enter |= may_have_passed(context, start, front)
     # Those of a net have gates that close while a train comes
-    return SignalColumns(
-        {"level_crossing_zone": zone, "enters_level_crossing": enters, "guarded": zone},
-        unknown={"enters_level_crossing": may_enter},
-    )
+    entering = Truth.known(enters).unknown_at(may_enter)
+    return world_signals(level_crossing_zone=zone, enters_level_crossing=entering, guarded=zone)
 
 
-def _warned(context: DriveContext) -> WorldSignal | None:
+def _warned(context: DriveContext) -> Truth | None:
     """Whether ego is past the sign warning of a level crossing; unknown where there may be one.
 
     No map has these signs, but where no level crossing is ahead, none warns of it.
@@ -45,7 +44,7 @@ def _warned(context: DriveContext) -> WorldSignal | None:
         return None
     front, nobody = context.ego_extents.s_max[0], np.zeros(context.states, dtype=bool)
     perhaps = _way_to_next(context, front) <= _SIGNS_M
-    return WorldSignal(nobody, perhaps)
+    return Truth.known(nobody).unknown_at(perhaps)
 
 
 def _way_to_next(context: DriveContext, places: Floats) -> Floats:
@@ -82,7 +81,7 @@ def _ways_to_next(context: DriveContext) -> Mapping[str, float]:
     return ways
 
 
-def _tracks_at_kerb(context: DriveContext) -> WorldSignal | None:
+def _tracks_at_kerb(context: DriveContext) -> Flags | None:
     """Whether rails are beside the kerb lane, or in it, as rail vehicles there show."""
     if not _tells_rails(context):
         return None
@@ -93,7 +92,8 @@ def _tracks_at_kerb(context: DriveContext) -> WorldSignal | None:
     runs = context.relevant[rails] & context.on_lanes[rails]
     runs &= abs(context.extents.turned[rails]) < 1.0
     in_it = (runs & (context.extents.lane[rails] == kerb)).any(axis=0)
-    return WorldSignal(_pieces_by_rails(context)[pieces] | in_it)
+    by_rails: Flags = _pieces_by_rails(context)[pieces] | in_it
+    return by_rails
 
 
 def _tells_rails(context: DriveContext) -> bool:

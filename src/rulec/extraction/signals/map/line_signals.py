@@ -25,16 +25,18 @@ from rulec.extraction.signals.map.stop_lines import (
 )
 from rulec.extraction.signals.measured_numbers import LONGEST_S, own_front, own_speed
 from rulec.extraction.signals.signal_columns import (
+    Measured,
     SignalColumn,
     SignalColumns,
-    WorldSignal,
     rounded,
     rounded_outward,
+    world_signals,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.driven_road import DrivenRoad, next_along
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight, Recording
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _NO_JUNCTION_M = 1000.0
 
@@ -63,12 +65,11 @@ def _to_line(context: DriveContext) -> SignalColumns:
         return np.where(ahead, np.where(may_drive, taken, LONGEST_S), 0.0)
 
     times = seconds(near, speed + error), seconds(far, speed - error)
-    return SignalColumns(
-        {"distance_to_stop_line": rounded(way), "time_to_stop_line": rounded(seconds(way, speed))},
-        bounds={
-            "distance_to_stop_line": rounded_outward(near, far),
-            "time_to_stop_line": rounded_outward(*times),
-        },
+    return world_signals(
+        distance_to_stop_line=Measured(rounded(way), bounds=rounded_outward(near, far)),
+        time_to_stop_line=Measured(
+            rounded(seconds(way, speed)), bounds=rounded_outward(*times)
+        ),
     )
 
 
@@ -100,11 +101,11 @@ def _way_to_line(context: DriveContext) -> tuple[Floats, tuple[Floats, Floats]]:
     return way, (near, far)
 
 
-def _to_junction(context: DriveContext) -> WorldSignal:
+def _to_junction(context: DriveContext) -> Measured:
     begin, _ = next_along(context.road.junctions, context.ego_extents.s_min[0])
     way, place = begin - context.ego_extents.s_max[0], context.tolerances.place_m
     to, *bounds = (np.clip(way + more, 0.0, _NO_JUNCTION_M) for more in (0.0, -place, place))
-    return WorldSignal(rounded(to), bounds=rounded_outward(bounds[0], bounds[1]))
+    return Measured(rounded(to), bounds=rounded_outward(bounds[0], bounds[1]))
 
 
 def _traffic_lights(context: DriveContext) -> SignalColumns:
@@ -116,12 +117,10 @@ def _traffic_lights(context: DriveContext) -> SignalColumns:
     front = own_front(context)
     light, crosses, may_cross = own_light(context)
     unseen = front + context.thresholds.light_reach_m > context.road.borders[-1]
-    return SignalColumns(
-        {"light": light, "crosses_light_line": crosses},
-        unknown={
-            "light": (light == "") | (unseen & nowhere & (not complete)),
-            "crosses_light_line": may_cross,
-        },
+    untold = (light == "") | (unseen & nowhere & (not complete))
+    return world_signals(
+        light=Measured(light, untold),
+        crosses_light_line=Truth.known(crosses).unknown_at(may_cross),
     )
 
 

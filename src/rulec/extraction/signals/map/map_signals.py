@@ -26,9 +26,9 @@ from rulec.extraction.signals.map.stop_lines import may_have_passed, stop_line
 from rulec.extraction.signals.measured_numbers import corner_ahead, own_front, own_widths
 from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
+    Measured,
     SignalColumn,
     SignalColumns,
-    WorldSignal,
     rounded,
     rounded_outward,
 )
@@ -45,6 +45,7 @@ from rulec.recordings.recording import (
     Lanelet,
 )
 from rulec.scenario.recorded.route import lanelet_area
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import distinct
 
 NO_LIMIT_KMH = 1000.0
@@ -82,15 +83,15 @@ _SURFACES = {
 _PLAIN = "carriageway"
 
 
-def _distance_to_crossing(context: DriveContext) -> WorldSignal | None:
+def _distance_to_crossing(context: DriveContext) -> Measured | None:
     if not crossings_told(context):
         return None
     distance, place = distance_to_crossing(context), context.tolerances.place_m
     nearer, farther = (_to_crossing(context, way * place) for way in (-1, 1))
-    return WorldSignal(rounded(distance), bounds=rounded_outward(nearer, farther))
+    return Measured(rounded(distance), bounds=rounded_outward(nearer, farther))
 
 
-def _crossing_zone(context: DriveContext) -> WorldSignal | None:
+def _crossing_zone(context: DriveContext) -> Truth | None:
     if not crossings_told(context):
         return None
     distance, zone = distance_to_crossing(context), context.thresholds.zone_m
@@ -100,24 +101,22 @@ def _crossing_zone(context: DriveContext) -> WorldSignal | None:
     _, end = next_crossing(context)
     half_step_m = np.maximum(context.ego_extents.along[0], 0.0) * context.recording.step_s / 2
     unknown |= context.ego_extents.s_max[0] + half_step_m > end - context.tolerances.place_m
-    return WorldSignal(near, unknown)
+    return Truth.known(near).unknown_at(unknown)
 
 
-def _limit(context: DriveContext) -> WorldSignal | None:
+def _limit(context: DriveContext) -> Measured | None:
     if not map_contents(context).limits:
         return None
-    return WorldSignal(
+    return Measured(
         rounded(np.minimum(context.limit_mps * KMH_PER_MPS, NO_LIMIT_KMH)), context.limit_untold
     )
 
 
-def _minimum_limit(context: DriveContext) -> WorldSignal | None:
+def _minimum_limit(context: DriveContext) -> Measured | None:
     if not map_contents(context).minima:
         return None
     least = own_lanelets(context).values(lambda at: at.minimum_mps or 0.0)
-    return WorldSignal(
-        rounded(np.array(least) * KMH_PER_MPS), may_hold(context, {LEAST_SPEED_SIGN})
-    )
+    return Measured(rounded(np.array(least) * KMH_PER_MPS), may_hold(context, {LEAST_SPEED_SIGN}))
 
 
 def _signs(context: DriveContext) -> SignalColumns:
@@ -140,7 +139,9 @@ def _signs(context: DriveContext) -> SignalColumns:
         for name in set(_OVERRULED) & values.keys():
             unknown[name] = (values[name] & (light == "")) | (unknown[name] & ~at_work)
             values[name] = values[name] & ~at_work
-    return SignalColumns(values, unknown=unknown)
+    return SignalColumns(
+        {name: Truth.known(own).unknown_at(unknown[name]) for name, own in values.items()}
+    )
 
 
 def _has_sign(signs: Set[str]) -> Callable[[Lanelet], bool]:
@@ -210,7 +211,7 @@ def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
     return next_along(context.road.crossings, context.ego_extents.s_min[0])
 
 
-def _surface(context: DriveContext) -> WorldSignal:
+def _surface(context: DriveContext) -> Measured:
     """What ego is on: a crossing if any part of it is on one, else the surface at its middle.
 
     That is of its road's lanes, or beside them of a hard shoulder which the map does not link to
@@ -221,7 +222,7 @@ def _surface(context: DriveContext) -> WorldSignal:
     if not (context.road.junctions or context.road.crossings or _kinds(context)):
         surfaces = np.full(context.states, _PLAIN)
         nowhere = np.zeros(context.states, dtype=bool)
-        return WorldSignal(surfaces, nowhere)
+        return Measured(surfaces, nowhere)
     middle, place = context.ego_extents.s[0], context.tolerances.place_m
     surfaces = _below_middle(context, middle, context.ego_lane)
     others = [_below_middle(context, middle + way * place, context.ego_lane) for way in (-1, 1)]
@@ -235,7 +236,7 @@ def _surface(context: DriveContext) -> WorldSignal:
     unknown |= _may_share(context) & (surfaces == "bus_lane")
     surfaces[on_it] = "crossing"
     unknown = (unknown | perhaps) & ~surely
-    return WorldSignal(surfaces, _in_doubt(context, surfaces, unknown))
+    return Measured(surfaces, _in_doubt(context, surfaces, unknown))
 
 
 def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Flags:

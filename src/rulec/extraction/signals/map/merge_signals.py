@@ -23,6 +23,7 @@ from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.recording import RAMPS, Lanelet, Recording
 from rulec.scenario.recorded.route import lanelet_length, turns_back
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _TAPERED = 0.6
 """A lane that ends is narrower at its end than this part of its width before."""
@@ -57,13 +58,11 @@ def _narrowings(context: DriveContext) -> SignalColumns:
             perhaps |= on_one & (np.abs(front - place) <= reach)
             perhaps_abreast |= beside
     return SignalColumns(
-        {"narrowing": narrowing, "merged": merged},
-        {"abreast_at_narrowing": abreast},
         {
-            "narrowing": perhaps & ~narrowing,
-            "merged": perhaps & ~merged,
-            "abreast_at_narrowing": perhaps_abreast & ~abreast,
+            "narrowing": Truth(narrowing, narrowing | perhaps),
+            "merged": Truth(merged, merged | perhaps),
         },
+        {"abreast_at_narrowing": Truth(abreast, abreast | perhaps_abreast)},
     )
 
 

@@ -45,7 +45,6 @@ from rulec.extraction.signals.map.right_of_way.unknown_ways import (
 )
 from rulec.extraction.signals.map.roundabout_signals import without_junction
 from rulec.extraction.signals.signal_columns import (
-    SignalColumn,
     SignalColumns,
     end_to_end,
     nobody,
@@ -54,6 +53,7 @@ from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.at_junctions.junctions import before_joining
 from rulec.scenario.recorded.reference_line import turn
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _SIDES = (*FROM_SIDES, ONCOMING)
 _RING, _RAIL = "conflict_on_roundabout", "conflict_with_rail"
@@ -105,11 +105,10 @@ def _conflicts(context: DriveContext) -> SignalColumns:
     if may_meet(context):
         for name in possible:
             strangers[name] |= astray(context)
-    not_told = {x: (unknown[x] | strangers[x]) & ~conflicts[x] for x in _CONFLICTS}
     when = arrivals(context, encounters, strangers)
-    not_told[_RING] |= without_junction(context) & ~conflicts[_RING]
-    world: dict[str, SignalColumn] = {**conflicts, **when.world}
-    return SignalColumns(world, unknown=not_told | dict(when.unknown), whom=whom)
+    strangers[_RING] |= without_junction(context)
+    told = {x: Truth(own, own | unknown[x] | strangers[x]) for x, own in conflicts.items()}
+    return SignalColumns({**told, **when}, whom=whom)
 
 
 def _possible_conflicts(context: DriveContext, own: Passage, row: int, side: str) -> Iterator[str]:
@@ -220,7 +219,9 @@ def _roads(context: DriveContext) -> SignalColumns:
         columns[priority][span], unknown[priority][span] = has_sign, may_have and not has_sign
     if not _tells_priority(context):
         del columns[priority], unknown[priority]
-    return SignalColumns(columns, unknown=unknown)
+    return SignalColumns(
+        {name: Truth.known(own).unknown_at(unknown[name]) for name, own in columns.items()}
+    )
 
 
 def _tells_priority(context: DriveContext) -> bool:

@@ -13,12 +13,13 @@ from rulec.array_types import Flags
 from rulec.extraction.computed_once import once_a_map
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, WorldSignal
+from rulec.extraction.signals.signal_columns import Measured, SignalColumns, world_signals
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.surroundings import Directions
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, RAMPS, Lanelet
 from rulec.scenario.recorded.route import lanes_beside
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _OUTSIDE = frozenset({"country", "rural", "highway", "interstate"})
 _SETTINGS = _OUTSIDE | {"urban"}
@@ -35,40 +36,40 @@ _LANE_KINDS = {
 }
 
 
-def _built_up(context: DriveContext) -> WorldSignal | None:
+def _built_up(context: DriveContext) -> Truth | None:
     if not _SETTINGS & map_contents(context).types:
         return None
     town, unknown = own_lanelets(context).told(_town(context))
-    return WorldSignal(town, unknown)
+    return Truth.known(town).unknown_at(unknown)
 
 
-def _road_class(context: DriveContext) -> SignalColumns:
+def _road_class(context: DriveContext) -> Measured | None:
     town, types = _town(context), _types_of_road(context)
     classes = own_lanelets(context).values(lambda at: _class(types(at), town(at)))
     told = context.spans.agreed([any(classes[columns]) for columns in context.spans.slices])
-    return _where_told("road_class", classes) if told else SignalColumns()
+    return _where_told(classes) if told else None
 
 
-def _where_told(name: str, values: list[str]) -> SignalColumns:
+def _where_told(values: list[str]) -> Measured:
     column = np.array(values)
-    return SignalColumns({name: column}, unknown={name: column == ""})
+    return Measured(column, column == "")
 
 
 def _ways(context: DriveContext) -> SignalColumns:
     directions, spans = _directions(context), context.spans
-    world: dict[str, SignalColumn] = {}
-    unknown: dict[str, Flags] = {}
-    told = {
+    ways = {
         "one_way": own_lanelets(context).told(lambda at: directions(at)[0]),
         "divided": own_lanelets(context).told(lambda at: directions(at)[1]),
     }
-    for name, (holds, dark) in told.items():
-        if spans.agreed((~spans.all(dark))[spans.begins].tolist()):
-            world[name], unknown[name] = holds, dark
-    return SignalColumns(world, unknown=unknown)
+    told = {
+        name: Truth.known(holds).unknown_at(dark)
+        for name, (holds, dark) in ways.items()
+        if spans.agreed((~spans.all(dark))[spans.begins].tolist())
+    }
+    return SignalColumns(told)
 
 
-def _lane_kind(context: DriveContext) -> SignalColumns:
+def _lane_kind(context: DriveContext) -> Measured | None:
     """The kind of the lane that ego has changed to last, consistent with `lane_change`.
 
     The lane of ego's middle differs a little earlier: then no vehicle would change from an entry
@@ -76,7 +77,7 @@ def _lane_kind(context: DriveContext) -> SignalColumns:
     joins or has left is unknown: several lanes of it may be used like any others.
     """
     if not _LANE_KINDS.keys() & map_contents(context).types:
-        return SignalColumns()
+        return None
     recording, inward_left = context.recording, context.side == "right"
     broad = BROAD_LEFT if inward_left else BROAD_RIGHT
 
@@ -91,28 +92,32 @@ def _lane_kind(context: DriveContext) -> SignalColumns:
         return "" if any(broad in recording.lanelets[x].types for x in inward) else told
 
     kinds = lanelets_at(context, context.ego_extents.s[0], context.steady_lane).values(kind)
-    return _where_told("lane_kind", kinds)
+    return _where_told(kinds)
 
 
-def _tunnel(context: DriveContext) -> WorldSignal | None:
+def _tunnel(context: DriveContext) -> Flags | None:
     if "tunnel" not in map_contents(context).types:
         return None
-    return WorldSignal(own_lanelets(context).flags(lambda at: "tunnel" in at.types))
+    return own_lanelets(context).flags(lambda at: "tunnel" in at.types)
 
 
 def _officers(context: DriveContext) -> SignalColumns:
     if "officer" not in context.recording.complete:
         return SignalColumns()
     nobody = np.zeros(context.states, dtype=bool)
-    return SignalColumns({"told_to_stop": nobody, "told_to_go": nobody})
+    return world_signals(told_to_stop=nobody, told_to_go=nobody)
 
 
 def _weather(context: DriveContext) -> SignalColumns:
     weather = context.recording.weather
     told = {"wet": weather.wet, "icy": weather.icy, "visibility": weather.visibility_m}
     told |= {"raining": weather.raining, "night": weather.night}
-    return SignalColumns(
-        {name: np.full(context.states, value) for name, value in told.items() if value is not None}
+    return world_signals(
+        **{
+            name: np.full(context.states, value)
+            for name, value in told.items()
+            if value is not None
+        }
     )
 
 

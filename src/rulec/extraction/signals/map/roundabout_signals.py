@@ -12,9 +12,10 @@ from rulec.extraction.computed_once import once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.stop_lines import may_have_passed
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumns, world_signals
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.driven_road import runs_along
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _ROUNDABOUT = frozenset({"ROUNDABOUT"})
 _SIGNS: Mapping[str, frozenset[str]] = {
@@ -46,10 +47,9 @@ def _rings(context: DriveContext) -> SignalColumns:
             may = any(signs & x.untold_signs for x in there) or signs.isdisjoint(known)
             words[name] |= nears & any(signs & x.signs for x in there)
             unknown[name] |= nears & may
-    world: dict[str, SignalColumn] = {"roundabout": inside, "enters_roundabout": enters, **words}
-    not_told = {name: unknown[name] & ~words[name] for name in _SIGNS}
-    not_told["enters_roundabout"] = may_enter
-    return SignalColumns(world, unknown=not_told)
+    told = {name: Truth(own, own | unknown[name]) for name, own in words.items()}
+    entering = Truth.known(enters).unknown_at(may_enter)
+    return world_signals(roundabout=inside, enters_roundabout=entering, **told)
 
 
 def without_junction(context: DriveContext) -> Flags:

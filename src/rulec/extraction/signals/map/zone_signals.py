@@ -17,7 +17,7 @@ from rulec.extraction.signals.map.exit_room import exit_clear
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import drawn_lines
-from rulec.extraction.signals.signal_columns import WorldSignal
+from rulec.extraction.signals.signal_columns import Measured
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.driven_road import Stretches, reach_into
 from rulec.recordings.recording import Recording, is_lane, is_there
@@ -31,7 +31,7 @@ _BEFORE_LINE_M = 10.0
 """On maps without stop lines, crossings are up to this far before ends of lanelets with lights."""
 
 
-def _crossing_kind(context: DriveContext) -> WorldSignal:
+def _crossing_kind(context: DriveContext) -> Measured:
     """The kind of the crossing ahead: ``directed_crossing`` by a light of its own or ego's.
 
     Unknown where there may be an unobserved light.
@@ -42,7 +42,7 @@ def _crossing_kind(context: DriveContext) -> WorldSignal:
         directed |= (start == place) & lit
         unknown |= (start == place) & unsure
     kinds = np.where(directed, "directed_crossing", "zebra")
-    return WorldSignal(kinds, unknown)
+    return Measured(kinds, unknown)
 
 
 @once_a_road

@@ -21,12 +21,13 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.presences import in_presences
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distances
-from rulec.extraction.signals.signal_columns import ObjectSignal, rounded, rounded_outward
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.signal_columns import Measured, rounded, rounded_outward
+from rulec.extraction.signals.signal_passes import SignalPasses, about
 from rulec.extraction.tracks.driven_road import reach_into
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import begin_runs, distinct
 
 _AWAY_MPS = 0.3
@@ -45,7 +46,7 @@ _OUTLIERS = 3.0
 _HAIR_S = 1e-6
 
 
-def _ahead_for(context: DriveContext) -> ObjectSignal:
+def _ahead_for(context: DriveContext) -> Measured:
     """Times (s) for which ego has been behind others in the same lane, with their bounds."""
     _, surely, _ = relations.ahead_in_lane(context)
     cells, step_s = relations.perhaps_ahead(context), context.recording.step_s
@@ -66,7 +67,7 @@ def _ahead_for(context: DriveContext) -> ObjectSignal:
     measured, low, high = (
         in_presences(context, cells, own, 0.0) for own in (rounded(least), *ends)
     )
-    return ObjectSignal(measured, bounds=(low, high))
+    return Measured(measured, bounds=(low, high))
 
 
 def _since(context: DriveContext, cells: Cells) -> tuple[NDArray[intp], Flags]:
@@ -170,13 +171,13 @@ def _side(context: DriveContext, cells: Cells) -> Floats:
     return side
 
 
-def may_part(context: DriveContext) -> ObjectSignal:
+def may_part(context: DriveContext) -> Truth:
     """Unknown for participants ahead in ego's lane that leave it soon, False for all others.
 
     No law says how near they may be by then.
     """
     unknown = parts_soon(context)
-    return ObjectSignal(unknown & False, unknown)
+    return Truth.known(unknown & False).unknown_at(unknown)
 
 
 def _in_junctions(context: DriveContext, cells: Cells) -> Flags:
@@ -205,7 +206,7 @@ def _would_stand(context: DriveContext, at: Cells, spans: EndToEnd) -> NDArray[i
     return stands
 
 
-def keeps_safe_gap(context: DriveContext) -> ObjectSignal:
+def keeps_safe_gap(context: DriveContext) -> Truth:
     """Whether ego keeps its distance from participants that are, or may be, ahead in its lane.
 
     Unknown for a participant that already stood ``reaction_s`` ago if ego can stop behind it: ego
@@ -230,7 +231,7 @@ def keeps_safe_gap(context: DriveContext) -> ObjectSignal:
     far_too_late = short.take(late) > _OUTLIERS * wrong.take(late)
     moot[late] |= _brief_and_slight(context, cells.part(late), far_too_late)
     safe, unknown = ~follows | (short <= 0), (follows & (np.abs(short) < wrong)) | moot
-    return ObjectSignal(cells.laid(safe, True), cells.laid(unknown))
+    return Truth.known(cells.laid(safe, True)).unknown_at(cells.laid(unknown))
 
 
 def _need_not_follow(context: DriveContext, cells: Cells, short: Floats) -> Flags:
@@ -295,5 +296,5 @@ def safe_gaps(context: DriveContext) -> SafeGaps:
     return SafeGaps(cells, gap, safe, error + scale * np.abs(gap))
 
 
-following_signals = SignalPasses({"ahead_for": _ahead_for})
+following_signals = SignalPasses({"ahead_for": about(_ahead_for)})
 """The signal of times behind others."""

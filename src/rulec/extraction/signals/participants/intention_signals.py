@@ -20,24 +20,25 @@ from rulec.extraction.signals.conduct.others_lamps import (
     own_part,
 )
 from rulec.extraction.signals.ego_lanelets import those_on_lanes
-from rulec.extraction.signals.signal_columns import ObjectSignal
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.signal_columns import OfObjects
+from rulec.extraction.signals.signal_passes import SignalPasses, about
 from rulec.extraction.tracks.driven_road import reach_into
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _PUBLIC = ("bus", "rail_vehicle")
 
 
-def _boarding(context: DriveContext) -> ObjectSignal:
+def _boarding(context: DriveContext) -> Truth:
     public = np.any([context.tracks.of_type(kind) for kind in _PUBLIC], axis=0)[:, None]
     if not public.any():
         nobody = np.zeros(context.relevant.shape, dtype=bool)
-        return ObjectSignal(nobody, nobody)
+        return Truth.known(nobody).unknown_at(nobody)
     stops = public & context.standing
     doors, told = _open_doors(context)
     doors &= ~_doors_away(context)
-    return ObjectSignal(stops & doors, stops & ~told)
+    return Truth.known(stops & doors).unknown_at(stops & ~told)
 
 
 def _open_doors(context: DriveContext) -> tuple[Flags, Flags]:
@@ -60,13 +61,13 @@ def _doors_away(context: DriveContext) -> Flags:
     return away
 
 
-def _warning_lights(context: DriveContext) -> ObjectSignal | None:
+def _warning_lights(context: DriveContext) -> Truth | None:
     if "hazard_lights" not in context.surroundings.whole.shows:
         return None
     hazard, told = lit_lamps(context, "hazard_lights")
     blue, _ = lit_lamps(context, "blue_light")
     warns = hazard | flashing(blue, context)
-    return ObjectSignal(warns, ~told & ~warns)
+    return Truth(warns, warns | ~told)
 
 
 def may_have_broken_down(context: DriveContext) -> Flags:
@@ -86,18 +87,18 @@ def may_have_broken_down(context: DriveContext) -> Flags:
     return warns
 
 
-def _hazard_lights(context: DriveContext) -> ObjectSignal | None:
+def _hazard_lights(context: DriveContext) -> Truth | None:
     if "hazard_lights" not in context.surroundings.whole.shows:
         return None
     hazard, told = lit_lamps(context, "hazard_lights")
-    return ObjectSignal(hazard, ~told & ~hazard)
+    return Truth(hazard, hazard | ~told)
 
 
 def _far_indicator(context: DriveContext) -> tuple[Flags, Flags]:
     return lit_lamps(context, "left_indicator" if context.side == "right" else "right_indicator")
 
 
-def _turning_far(context: DriveContext) -> ObjectSignal:
+def _turning_far(context: DriveContext) -> Truth:
     """The signal of vehicles that have signalled to turn to the far side, and do.
 
     However long they wait for it with the indicator on.
@@ -115,7 +116,9 @@ def _turning_far(context: DriveContext) -> ObjectSignal:
             seen_last &= context.spans.columns == context.spans.end - 1
         drives = context.tracks.of_type("vehicle")[:, None]
         open_end |= drives & _lit_until(context, seen_last, lit)
-    return ObjectSignal(turns & lit, np.where(told, lit & open_end & ~turns, turns | open_end))
+    return Truth.known(turns & lit).unknown_at(
+        np.where(told, lit & open_end & ~turns, turns | open_end)
+    )
 
 
 def _lit_until(context: DriveContext, flags: Flags, lit: Flags) -> Flags:
@@ -167,13 +170,13 @@ def _may_turn(context: DriveContext, row: int) -> bool:
     return not inside and passages.crosses_junction((x, y), ahead)
 
 
-def _leaving_stop(context: DriveContext) -> ObjectSignal:
+def _leaving_stop(context: DriveContext) -> Truth:
     """The signal of buses that stand at a stop, signal to leave it, and do so soon."""
     leaves, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
     buses = context.tracks.of_type("bus").nonzero()[0]
     if len(buses):
         leaves[buses], unknown[buses] = _buses_leave(context, buses)
-    return ObjectSignal(leaves, unknown)
+    return Truth.known(leaves).unknown_at(unknown)
 
 
 def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Flags]:
@@ -220,7 +223,7 @@ def _last_seen(context: DriveContext) -> NDArray[intp]:
     return last
 
 
-def _about_to_overtake(context: DriveContext) -> ObjectSignal:
+def _about_to_overtake(context: DriveContext) -> Truth:
     """The signal of vehicles that have signalled to pull out to the far side, and do so soon.
 
     A vehicle on a lane that joins others has to leave it, and overtakes nobody by that. Unknown for
@@ -234,7 +237,7 @@ def _about_to_overtake(context: DriveContext) -> ObjectSignal:
     rows = pulls_out.any(axis=1).nonzero()[0]
     lit, told = _far_indicator(context)
     if not len(rows) and not lit.any():
-        return ObjectSignal(lit, lit)
+        return Truth.known(lit).unknown_at(lit)
     inside = context.on_lanes[rows]
     pulls_out[rows] &= inside & context.spans.after(inside)
     soon = np.zeros_like(pulls_out)
@@ -245,7 +248,7 @@ def _about_to_overtake(context: DriveContext) -> ObjectSignal:
     if lit.any():
         perhaps = told & lit & _ends_within(context, steps) & ~soon
         unknown |= perhaps & ~those_on_lanes(context, JOINING, perhaps)
-    return ObjectSignal(soon & lit, unknown)
+    return Truth.known(soon & lit).unknown_at(unknown)
 
 
 def _caught_up(context: DriveContext, cells: Cells) -> Flags:
@@ -257,7 +260,7 @@ def _caught_up(context: DriveContext, cells: Cells) -> Flags:
     return caught_up
 
 
-def _came_up(context: DriveContext) -> ObjectSignal:
+def _came_up(context: DriveContext) -> OfObjects:
     """The signal of riders that came up beside ego while it waited at a junction.
 
     For a rider that is already beside ego when first seen, it is unknown how it got there.
@@ -266,7 +269,7 @@ def _came_up(context: DriveContext) -> ObjectSignal:
     came, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)
     if riders.any():
         came[riders], unsure[riders] = _came_beside(context, riders.nonzero()[0])
-    return ObjectSignal(came, unsure, only=riders)
+    return OfObjects(Truth.known(came).unknown_at(unsure), riders)
 
 
 def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags]:
@@ -287,12 +290,12 @@ def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Fla
 
 intention_signals = SignalPasses(
     {
-        "boarding": _boarding,
-        "leaving_stop": _leaving_stop,
-        "warning_lights": _warning_lights,
-        "hazard_lights": _hazard_lights,
-        "turning_far": _turning_far,
-        "about_to_overtake": _about_to_overtake,
+        "boarding": about(_boarding),
+        "leaving_stop": about(_leaving_stop),
+        "warning_lights": about(_warning_lights),
+        "hazard_lights": about(_hazard_lights),
+        "turning_far": about(_turning_far),
+        "about_to_overtake": about(_about_to_overtake),
         "came_up_beside": _came_up,
     }
 )

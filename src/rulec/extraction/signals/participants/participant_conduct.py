@@ -17,11 +17,12 @@ from rulec.extraction.signals.ego_lanelets import (
     those_on_lanes,
 )
 from rulec.extraction.signals.participants.intention_signals import may_have_broken_down
-from rulec.extraction.signals.signal_columns import ObjectSignal
+from rulec.extraction.signals.signal_columns import OfObjects
 from rulec.extraction.tracks.lane_sets import edges
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import distinct
 
 _ALONG = 0.5
@@ -36,9 +37,9 @@ _EDGE_M, _ROOM_M = 0.5, 3.05
 """A parked vehicle is at the edge; the widest vehicle (2.55 m) needs half a metre more to pass."""
 
 
-def oncoming(context: DriveContext) -> ObjectSignal:
+def oncoming(context: DriveContext) -> Flags:
     """Whether participants come towards ego; see ``comes_towards``."""
-    return ObjectSignal(comes_towards(context))
+    return comes_towards(context)
 
 
 @once
@@ -88,7 +89,7 @@ def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
     return waits
 
 
-def goes_across(context: DriveContext) -> ObjectSignal:
+def goes_across(context: DriveContext) -> Truth:
     """Whether participants move across the road more than along it.
 
     A person or cycle that crosses keeps crossing, even if it stops or is hit, until it leaves the
@@ -109,7 +110,7 @@ def goes_across(context: DriveContext) -> ObjectSignal:
         present = context.tracks.present[users]
         known, away = map(context.spans.latest, ((goes[users] | off) & present, ~present))
         unsure[users] |= _appears_there(context, users, away) & (known <= away)
-    return ObjectSignal(goes, unsure)
+    return Truth.known(goes).unknown_at(unsure)
 
 
 def _appears_there(context: DriveContext, rows: NDArray[intp], away: NDArray[intp]) -> Flags:
@@ -139,17 +140,16 @@ def _mostly_along(context: DriveContext, rows: NDArray[intp]) -> Flags:
     return 2 * spans.count_of_last(turns, steps) > steps
 
 
-def stopped(context: DriveContext) -> ObjectSignal:
+def stopped(context: DriveContext) -> Flags:
     """Whether participants stand."""
-    stands = context.standing
-    return ObjectSignal(stands)
+    return context.standing
 
 
-def parked(context: DriveContext) -> ObjectSignal:
+def parked(context: DriveContext) -> Truth:
     """Whether participants are parked; unknown for those that may have broken down."""
     standing = [body.standing for body in context.tracks.participants]
     parked = _constant(context, standing) | _stays_aside(context)
-    return ObjectSignal(parked, may_have_broken_down(context) & ~parked)
+    return Truth(parked, parked | may_have_broken_down(context))
 
 
 def _stays_aside(context: DriveContext) -> Flags:
@@ -186,7 +186,7 @@ def _at_edge(others: RoadExtents, there: Flags) -> Flags:
     return at_edge
 
 
-def on_shoulder(context: DriveContext) -> ObjectSignal:
+def on_shoulder(context: DriveContext) -> Truth:
     """Whether vehicles heading along the road stand beside its lanes or are on a hard shoulder.
 
     Only at the near side: at the far one they may be on lanes of the other direction. A vehicle
@@ -204,20 +204,20 @@ def on_shoulder(context: DriveContext) -> ObjectSignal:
     loose = context.tolerances.place_m + np.abs(context.map_offset_m)
     beside = along & (inside | (stands & (beyond > 0)))
     unsure = along & ~inside & ((np.abs(beyond) < loose) | (~stands & (beyond > 0)))
-    return ObjectSignal(beside, unsure)
+    return Truth.known(beside).unknown_at(unsure)
 
 
-def two_wheeled(context: DriveContext) -> ObjectSignal:
+def two_wheeled(context: DriveContext) -> Flags:
     """Whether participants ride on two wheels."""
     two_wheeled = [body.type in _TWO_WHEELED for body in context.tracks.participants]
-    return ObjectSignal(_constant(context, two_wheeled))
+    return _constant(context, two_wheeled)
 
 
 def _constant(context: DriveContext, flags: list[bool]) -> Flags:
     return np.array(flags, dtype=bool)[:, None].repeat(context.states, axis=1)
 
 
-def in_the_road(context: DriveContext) -> ObjectSignal:
+def in_the_road(context: DriveContext) -> OfObjects:
     """Whether people are on a lane; unknown at the outermost edges there, where they may wait.
 
     Unknown, too, for riders on a cycle lane: it may be a path beside the road.
@@ -240,4 +240,6 @@ def in_the_road(context: DriveContext) -> ObjectSignal:
     if CYCLE_LANE in map_contents(context).types:
         rides = context.tracks.of_type("light_rider")[:, None] & context.tracks.on_lane
         unsure |= those_on_lanes(context, CYCLE_LANE, rides)
-    return ObjectSignal(context.tracks.on_lane, unsure & context.tracks.on_lane, only=users)
+    return OfObjects(
+        Truth.known(context.tracks.on_lane).unknown_at(unsure & context.tracks.on_lane), users
+    )

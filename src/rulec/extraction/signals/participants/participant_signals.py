@@ -32,25 +32,26 @@ from rulec.extraction.signals.participants.participant_conduct import (
 )
 from rulec.extraction.signals.settling import only_when, with_one_change
 from rulec.extraction.signals.signal_columns import (
-    ObjectSignal,
+    Measured,
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.signal_passes import SignalPasses, about
 from rulec.scenario.paper_words import LATERALS, STATIONS
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _ASKED_FOR_M = 3.0
 """No law requires more room between a vehicle and a cycle, or people in the road."""
 
 
-def _position(context: DriveContext) -> ObjectSignal:
+def _position(context: DriveContext) -> Measured:
     """The paper's positions; unknown, like stations, for participants at ego's side at first."""
     position = relations.position(context)
     at_side = (position == "l") | (position == "r")
-    return ObjectSignal(position, _at_first(context) & at_side)
+    return Measured(position, _at_first(context) & at_side)
 
 
-def _station(context: DriveContext) -> ObjectSignal:
+def _station(context: DriveContext) -> Measured:
     """The stations; unknown within the tolerance of places, except while ego or the other passes.
 
     There only the moment is in doubt, unless passing takes longer than ``passed_s``. Unknown, too,
@@ -64,7 +65,7 @@ def _station(context: DriveContext) -> ObjectSignal:
     station = with_one_change(station, doubtful, there, context.spans)
     doubtful &= ~only_when(station, doubtful, there, longest, context.spans)
     beside = _at_first(context) & (relations.station(context) == relations.BESIDE)
-    return ObjectSignal(station, doubtful | _passed_unseen(context) | beside, texts=STATIONS)
+    return Measured(station, doubtful | _passed_unseen(context) | beside, texts=STATIONS)
 
 
 @once
@@ -97,7 +98,7 @@ def _passed_unseen(context: DriveContext) -> Flags:
     return passed
 
 
-def _lateral(context: DriveContext) -> ObjectSignal:
+def _lateral(context: DriveContext) -> Measured:
     """The sides of others; unknown within tolerances, except while ego or the other moves over.
 
     There only the moment is in doubt, as with stations.
@@ -107,34 +108,34 @@ def _lateral(context: DriveContext) -> ObjectSignal:
     longest = context.steps_in(context.thresholds.passed_s)
     codes = with_one_change(laterals.codes, laterals.doubtful, there, context.spans)
     over = only_when(codes, laterals.doubtful, there, longest, context.spans)
-    return ObjectSignal(codes, laterals.doubtful & ~over, texts=LATERALS)
+    return Measured(codes, laterals.doubtful & ~over, texts=LATERALS)
 
 
-def _gap(context: DriveContext) -> ObjectSignal:
+def _gap(context: DriveContext) -> Measured:
     gap, least, most = gaps(context)
-    return ObjectSignal(rounded(gap), bounds=rounded_outward(least, most))
+    return Measured(rounded(gap), bounds=rounded_outward(least, most))
 
 
-def _time_headway(context: DriveContext) -> ObjectSignal:
+def _time_headway(context: DriveContext) -> Measured:
     # The speed that the word `speed` has
     cells = presence_cells(context)
     speed, drives = cells.of(own_speed(context)[0]), cells.of(context.ego_moves)
     seconds = gaps(context)[0] / np.where(drives, speed, 1.0)
     headway = np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
-    return ObjectSignal(rounded(headway), bounds=headway_bounds(context))
+    return Measured(rounded(headway), bounds=headway_bounds(context))
 
 
-def _lateral_gap(context: DriveContext) -> ObjectSignal:
+def _lateral_gap(context: DriveContext) -> Measured:
     gap, bounds = lateral_gaps(context)
-    return ObjectSignal(rounded(gap), bounds=bounds)
+    return Measured(rounded(gap), bounds=bounds)
 
 
-def _speed_difference(context: DriveContext) -> ObjectSignal:
+def _speed_difference(context: DriveContext) -> Measured:
     difference, _ = speed_differences(context)
-    return ObjectSignal(rounded(difference), bounds=difference_bounds(context))
+    return Measured(rounded(difference), bounds=difference_bounds(context))
 
 
-def _time_to_collision(context: DriveContext) -> ObjectSignal:
+def _time_to_collision(context: DriveContext) -> Measured:
     """The time (s) in which ego reaches participants ahead in its lane, at both current speeds."""
     measured, surely, perhaps = relations.ahead_in_lane(context)
     # Ego runs into no other participants
@@ -156,19 +157,19 @@ def _time_to_collision(context: DriveContext) -> ObjectSignal:
         in_presences(context, cells, own, LONGEST_S)
         for own in (seconds_measured, *rounded_outward(soonest, latest_s))
     )
-    return ObjectSignal(found, bounds=(low, high))
+    return Measured(found, bounds=(low, high))
 
 
-def _precedes(context: DriveContext) -> ObjectSignal:
+def _precedes(context: DriveContext) -> Flags:
     """The participant next ahead of ego in its lane."""
     (follows, _, _), cells = relations.ahead_in_lane(context), relations.perhaps_ahead(context)
     counts = cells.of(follows) & ~cells.of(comes_towards(context)) & cells.of(context.relevant)
     ahead = cells.part(counts.nonzero()[0])
     gap = ahead.of(relations.gap(context))
-    return ObjectSignal(ahead.laid(gap == ahead.of(ahead.least(gap))))
+    return ahead.laid(gap == ahead.of(ahead.least(gap)))
 
 
-def _one_between(context: DriveContext) -> ObjectSignal:
+def _one_between(context: DriveContext) -> Truth:
     """Whether another vehicle ahead in ego's lane is nearer to ego than a participant ahead.
 
     It is if it is nearer by more than the tolerance of places, and unknown within that.
@@ -182,30 +183,30 @@ def _one_between(context: DriveContext) -> ObjectSignal:
     )
     between = gap > nearest + place
     unknown = ~between & (gap > may_be - place) & (gap > may_be)
-    return ObjectSignal(cells.laid(between), cells.laid(unknown))
+    return Truth.known(cells.laid(between)).unknown_at(cells.laid(unknown))
 
 
 participant_signals = SignalPasses(
     {
-        "position": _position,
-        "station": _station,
-        "lateral": _lateral,
-        "gap": _gap,
-        "time_headway": _time_headway,
-        "lateral_gap": _lateral_gap,
-        "speed_difference": _speed_difference,
-        "time_to_collision": _time_to_collision,
-        "safe_gap": keeps_safe_gap,
-        "parts_soon": may_part,
-        "precedes": _precedes,
-        "one_between": _one_between,
-        "oncoming": oncoming,
-        "goes_across": goes_across,
-        "stopped": stopped,
-        "parked": parked,
-        "on_shoulder": on_shoulder,
-        "leads_elsewhere": leads_elsewhere,
-        "two_wheeled": two_wheeled,
+        "position": about(_position),
+        "station": about(_station),
+        "lateral": about(_lateral),
+        "gap": about(_gap),
+        "time_headway": about(_time_headway),
+        "lateral_gap": about(_lateral_gap),
+        "speed_difference": about(_speed_difference),
+        "time_to_collision": about(_time_to_collision),
+        "safe_gap": about(keeps_safe_gap),
+        "parts_soon": about(may_part),
+        "precedes": about(_precedes),
+        "one_between": about(_one_between),
+        "oncoming": about(oncoming),
+        "goes_across": about(goes_across),
+        "stopped": about(stopped),
+        "parked": about(parked),
+        "on_shoulder": about(on_shoulder),
+        "leads_elsewhere": about(leads_elsewhere),
+        "two_wheeled": about(two_wheeled),
         "in_the_road": in_the_road,
     }
 )

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from rulec.array_types import Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
-from rulec.extraction.signals.signal_columns import WorldSignal
+from rulec.extraction.signals.signal_columns import Measured
 
 _INDICATORS = frozenset({"left_indicator", "right_indicator"})
 
@@ -25,7 +25,7 @@ _ABRUPT_MPS, _ABRUPT_S = 2.5, 2.0
 """Who changes lanes faster than anybody drives began to at most this long (s) before."""
 
 
-def indicator(context: DriveContext) -> WorldSignal | None:
+def indicator(context: DriveContext) -> Measured | None:
     """Ego's indicator, if the recording contains its lamps.
 
     Both sides at once are no indication, like hazard lights; if a file states that hazard lights
@@ -71,7 +71,7 @@ def indicator(context: DriveContext) -> WorldSignal | None:
     abrupt = changed & (across_mps > _ABRUPT_MPS)
     abrupt = spans.within(abrupt, context.steps_in(_ABRUPT_S))
     unknown |= is_dark & abrupt & ~changed
-    return WorldSignal(codes, unknown, texts=_INDICATIONS)
+    return Measured(codes, unknown, texts=_INDICATIONS)
 
 
 def _lit_across(context: DriveContext, codes: NDArray[intp], change: int) -> int:

@@ -23,10 +23,11 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
 )
 from rulec.extraction.signals.conduct.u_turns import may_turn_round, swings_round, u_turns
 from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
-from rulec.extraction.signals.signal_columns import WorldSignal, ids_by_state
+from rulec.extraction.signals.signal_columns import Caused, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.route import lanelet_area
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import begin_runs, distinct
 
 _BACK_S = 0.5
@@ -44,7 +45,7 @@ _ASTRIDE_S = 1.0
 _HAIR_M = 0.01
 
 
-def _lane_change(context: DriveContext) -> WorldSignal:
+def _lane_change(context: DriveContext) -> Truth:
     """Whether ego has changed lanes; unknown within tolerances, and where ego turns round or off.
 
     Its body then swings over the lanes of the road that it enters. Unknown, too, where a lane has
@@ -66,7 +67,7 @@ def _lane_change(context: DriveContext) -> WorldSignal:
         for change, piece, before in zip(states.tolist(), *places, strict=True):
             unknown[change] = _at_fork(context, change, piece) or _at_merge(context, change, before)
     unknown |= np.logical_or.reduce(crossed_on_ring(context))
-    return WorldSignal(changes, unknown)
+    return Truth.known(changes).unknown_at(unknown)
 
 
 def _speed_ahead(context: DriveContext) -> Floats:
@@ -162,7 +163,7 @@ def _has_followed(context: DriveContext, lane: int, begin_m: float, end: int) ->
     return True
 
 
-def _lane_is_clear(context: DriveContext) -> WorldSignal:
+def _lane_is_clear(context: DriveContext) -> Caused:
     """Whether no vehicle has to brake or make way for ego as it comes into a lane.
 
     Unknown where the only ones that have to are about to be past, with ego coming in behind them,
@@ -201,7 +202,7 @@ def _lane_is_clear(context: DriveContext) -> WorldSignal:
         only_perhaps[flagged[is_perhaps]] = True
         unknown = np.where(clear, unsure, moot | stands | only_perhaps)
     unknown |= clear & np.logical_or.reduce(crossed_on_ring(context))
-    return WorldSignal(clear, unknown, whom=ids_by_state(disturbed, context.ids))
+    return Caused(Truth.known(clear).unknown_at(unknown), ids_by_state(disturbed, context.ids))
 
 
 def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn], Flags]:

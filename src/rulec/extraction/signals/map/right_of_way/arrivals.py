@@ -11,8 +11,8 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.conflicts import FROM_SIDES, Encounter
 from rulec.extraction.signals.map.right_of_way.held_up import DRIVES_MPS
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
-from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
+from rulec.trace.partly_known.partly_known_values import Truth
 
 ARRIVALS = ("arrived_together", "other_arrived_first", "other_in_junction")
 
@@ -54,7 +54,7 @@ def _stops(context: DriveContext, passage: Passage) -> int:
 
 def arrivals(
     context: DriveContext, encounters: Iterable[Encounter], strangers: Mapping[str, Flags]
-) -> SignalColumns:
+) -> dict[str, Truth]:
     """Whether one in conflict with ego arrived together with it or earlier, or is in the junction.
 
     Rules ask this of those who come from the sides, in ``encounters`` or maybe as ``strangers``; so
@@ -72,10 +72,11 @@ def arrivals(
     unknown: Flags = np.any(perhaps, axis=1) & ~found
     right = FROM_SIDES.index("conflict_from_right")
     unknown[0] |= found[0] & known[-1, right] & ~known[0, right]
-    return SignalColumns(
-        {word: found[number] for number, word in enumerate(ARRIVALS)},
-        unknown={word: unknown[number] for number, word in enumerate(ARRIVALS)},
-    )
+    truth = Truth.known(found).unknown_at(unknown)
+    return {
+        word: Truth(truth.sure[number], truth.possible[number])
+        for number, word in enumerate(ARRIVALS)
+    }
 
 
 def _by_side(context: DriveContext, encounters: Iterable[Encounter]) -> tuple[Flags, Flags]:
