@@ -52,10 +52,9 @@ def _oncoming_clear(context: DriveContext) -> Truth:
     against = present.of(context.extents.along) * KMH_PER_MPS < -limits.standing_kmh
     against &= context.tracks.of_type("vehicle")[present.rows]
     cells = present.part(against.nonzero()[0])
+    unseen = ends & ~far_enough
     if not len(cells):
-        return Truth.known(np.ones(context.states, dtype=bool)).unknown_at(
-            ends & ~alone & ~far_enough
-        )
+        return alone | Truth(~unseen, np.ones_like(unseen))
     comes = (np.abs(cells.of(context.extents.turned)) > np.pi / 2) & cells.of(context.relevant)
     cells = cells.part(comes.nonzero()[0])
     columns, station = cells.columns, cells.of(relations.station(context))
@@ -68,8 +67,8 @@ def _oncoming_clear(context: DriveContext) -> Truth:
         (station == relations.BESIDE, left_s < limits.overtaking_s, left_s < limits.yielding_s),
     )
     meets |= context.spans.within(met, steps) | _meets_beyond_middle(context, met | soon)
-    unknown = ends & ~far_enough | _may_brake_for_ego(context, cells)
-    return Truth.known(alone | ~meets).unknown_at(~alone & ~meets & unknown)
+    clear = Truth.known(~meets)
+    return alone | Truth(clear.sure & ~unseen & ~_may_brake_for_ego(context, cells), clear.possible)
 
 
 def _may_brake_for_ego(context: DriveContext, cells: Cells) -> Flags:
@@ -85,7 +84,7 @@ def _may_brake_for_ego(context: DriveContext, cells: Cells) -> Flags:
     braked = np.zeros(context.states, dtype=bool)
     if not hard.any():
         return braked
-    there, _ = oncoming_side(context)
+    there = oncoming_side(context).sure
     away = about_the_middle(context)
     back, since = spans.next_state(~away), spans.latest(~away)
     until_s = (back - np.arange(context.states)) * context.recording.step_s + limits.yielding_s
@@ -107,7 +106,7 @@ def _meets_beyond_middle(context: DriveContext, meets: Flags) -> Flags:
     """
     if not meets.any():
         return meets
-    there, _ = oncoming_side(context)
+    there = oncoming_side(context).sure
     away, spans = about_the_middle(context), context.spans
     meets = meets & away & (spans.latest(there) > spans.latest(~away))
     flags: Flags = away & (spans.next_state(meets) < spans.next_state(~away))
@@ -132,10 +131,10 @@ def _obstructed(context: DriveContext) -> Truth:
     """
     used = context.ego_extents.inside[0] > 0
     used[np.arange(context.states), context.ego_lane] = True
-    blocked, perhaps = np.zeros((2, context.states), dtype=bool)
+    blocked, on_the_way = np.zeros((2, context.states), dtype=bool)
     cells, needed = _obstacles(context)
     if not len(cells):
-        return Truth.known(blocked).unknown_at(perhaps)
+        return Truth.known(blocked)
     own = context.ego_extents
     needed += cells.of(own.d_max[0] - own.d_min[0])
     near, sets = _near_obstacle(context, cells), cells.of(context.lanes_within[0])
@@ -144,8 +143,8 @@ def _obstructed(context: DriveContext) -> Truth:
         there = is_in(sets, lane) & (np.maximum(low, -high) < needed)
         blocked |= cells.in_columns(there & near & cells.of(used[:, lane]))
         bodies = cells.part(there.nonzero()[0])
-        perhaps |= _on_the_way_round(context, bodies, lane, used[:, lane])
-    return Truth(blocked, blocked | perhaps)
+        on_the_way |= _on_the_way_round(context, bodies, lane, used[:, lane])
+    return Truth(blocked, blocked | on_the_way)
 
 
 def _obstacles(context: DriveContext) -> tuple[Cells, Floats]:

@@ -16,6 +16,7 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.recordings.recording import Lanelet
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _Value = TypeVar("_Value")
 
@@ -40,12 +41,12 @@ class OwnLanelets:
         of_each = [value(lanelet) for lanelet in self.lanelets]
         return [of_each[number] for number in self.number.tolist()]
 
-    def told(self, value: Callable[[Lanelet], bool | None]) -> tuple[Flags, Flags]:
-        """Masks of the states in which a function of the lanelet returns True, and None."""
+    def told(self, value: Callable[[Lanelet], bool | None]) -> Truth:
+        """Whether a function of the lanelet returns True, by state; None stands for unknown."""
         of_each = [value(lanelet) for lanelet in self.lanelets]
         true = np.array([x is True for x in of_each], dtype=bool)
-        unknown = np.array([x is None for x in of_each], dtype=bool)
-        return true[self.number], unknown[self.number]
+        not_false = np.array([x is not False for x in of_each], dtype=bool)
+        return Truth(true[self.number], not_false[self.number])
 
     def flags(self, holds: Callable[[Lanelet], bool]) -> Flags:
         """Mask of the states in which a condition holds for the lanelet."""

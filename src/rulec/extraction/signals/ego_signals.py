@@ -193,7 +193,7 @@ def _goes_over_the_middle(context: DriveContext) -> Flags:
     Up to ``passed_s`` before or after it is on the other half, not while it keeps to the edge; and
     in the first state wholly on one half after its middle was on the other.
     """
-    there, _ = oncoming_side(context)
+    there = oncoming_side(context).sure
     if not there.any():
         return np.zeros(context.states, dtype=bool)
     spans, on_both = context.spans, on_both_halves(context)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic
+from typing import TYPE_CHECKING, Any, ClassVar, Generic
 
 if TYPE_CHECKING:
     from typing_extensions import TypeVar
@@ -26,11 +26,14 @@ else:
 class Truth(Generic[Half]):
     """Where something is ``sure`` and where it is ``possible``; masks have shapes that broadcast.
 
-    What is sure is also possible. The operators are those of Kleene's strong three-valued logic.
+    What is sure is also possible. The operators are those of Kleene's strong three-valued logic;
+    the other operand may be a mask, which is known.
     """
 
     sure: Half
     possible: Half
+    # So that a mask on the left leaves the operation to this class
+    __array_ufunc__: ClassVar[None] = None
 
     @staticmethod
     def known(values: Half) -> Truth[Half]:
@@ -45,19 +48,29 @@ class Truth(Generic[Half]):
     def __invert__(self) -> Truth[Half]:
         return Truth.known(~self.sure) if self.is_known else Truth(~self.possible, ~self.sure)
 
-    def __and__(self, other: Truth[Half]) -> Truth[Half]:
-        if self.is_known and other.is_known:
-            return Truth.known(self.sure & other.sure)
-        return Truth(self.sure & other.sure, self.possible & other.possible)
+    def __and__(self, other: Truth[Half] | Half) -> Truth[Half]:
+        given = other if isinstance(other, Truth) else Truth.known(other)
+        if self.is_known and given.is_known:
+            return Truth.known(self.sure & given.sure)
+        return Truth(self.sure & given.sure, self.possible & given.possible)
 
-    def __or__(self, other: Truth[Half]) -> Truth[Half]:
-        if self.is_known and other.is_known:
-            return Truth.known(self.sure | other.sure)
-        return Truth(self.sure | other.sure, self.possible | other.possible)
+    __rand__ = __and__
+
+    def __or__(self, other: Truth[Half] | Half) -> Truth[Half]:
+        given = other if isinstance(other, Truth) else Truth.known(other)
+        if self.is_known and given.is_known:
+            return Truth.known(self.sure | given.sure)
+        return Truth(self.sure | given.sure, self.possible | given.possible)
+
+    __ror__ = __or__
 
     def same_as(self, other: Truth[Half]) -> Truth[Half]:
         """Both or neither."""
         return self & other | ~self & ~other
+
+    def or_possibly(self, possible: Half) -> Truth[Half]:
+        """The same truth, but possible where ``possible``, too."""
+        return Truth(self.sure, self.possible | possible)
 
     def unknown_at(self, unknown: Half) -> Truth[Half]:
         """The same truth, but unknown where ``unknown``."""

@@ -221,7 +221,7 @@ def _next_lane(context: DriveContext) -> NDArray[intp]:
 def _over_the_middle(context: DriveContext) -> Flags:
     """Mask of vehicles with their middle on the other half that have come from ego's lanes."""
     spans, others = context.spans, context.extents
-    both_ways, _ = two_way(context)
+    both_ways = two_way(context).sure
     low, high = sides_beyond_far_edge(context, others)
     over: Flags = both_ways & (low + high > 0) & (low < _HALF_M) & (abs(others.turned) < 1.0)
     over &= context.tracks.of_type("vehicle")[:, None] & ~context.on_lanes
@@ -249,7 +249,7 @@ def _gets_past(
     falls_back = seen & (faster_mps[rows] < -context.tolerances.speed_mps)
     is_past = spans.within(past, horizon)
     at_once = is_past & (spans.next_state(past) <= spans.next_state(falls_back))
-    comes_out = on_both_halves(context) | oncoming_side(context)[0]
+    comes_out = on_both_halves(context) | oncoming_side(context).sure
     brakes = (tracks.acceleration + tracks.acceleration_error)[rows] < -limits.disturbing_mps2
     at_once |= spans.within(brakes & over[rows] & comes_out & ~past, horizon) & ~falls_back
     gets_past, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)

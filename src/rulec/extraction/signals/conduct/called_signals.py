@@ -38,23 +38,23 @@ def _emergency_vehicle_near(context: DriveContext) -> Caused:
     Unknown for one that stands, does not sound a horn that the recording contains, is not beside
     ego soon, or comes on a crossing road, or braked there; and where ego itself is on call.
     """
-    on_call, not_told = _on_call(context)
-    surely, perhaps = _surely_near(context), _crosses_near(context)
-    rows = (on_call | not_told).any(axis=1).nonzero()[0]
+    on_call, near = _on_call(context).possible, _surely_near(context)
+    comes: Flags = np.logical_or.reduce(near)
+    possible = comes | _crosses_near(context)
+    rows = on_call.any(axis=1).nonzero()[0]
     if len(rows):
-        near = context.relevant[rows] & _comes_near(context)[rows]
-        perhaps |= np.logical_or.reduce(near & (on_call | not_told)[rows])
-    comes: Flags = np.logical_or.reduce(surely)
+        others = context.relevant[rows] & _comes_near(context)[rows]
+        possible |= np.logical_or.reduce(others & on_call[rows])
     if comes.any():
-        comes &= ~_may_be_on_call(context)
-    return Caused(Truth(comes, comes | perhaps), ids_by_state(surely & comes, context.ids))
+        comes &= ~_ego_on_call(context).possible
+    return Caused(Truth(comes, possible), ids_by_state(near & comes, context.ids))
 
 
 @once
 def _surely_near(context: DriveContext) -> Flags:
     """Mask of vehicles on call that drive and surely come near."""
     found: Flags = np.zeros(context.relevant.shape, dtype=bool)
-    on_call, _ = _on_call(context)
+    on_call = _on_call(context).sure
     rows = on_call.any(axis=1).nonzero()[0]
     if len(rows):
         needs_way = _drives(context, rows) & ~_is_silent(context, rows)
@@ -85,30 +85,24 @@ def _at_edge(context: DriveContext) -> Flags:
     return (np.minimum(right, left) < edge) & (np.abs(right - left) > edge)
 
 
-def _called(context: DriveContext) -> Truth:
-    on_call, not_told = _on_call(context)
-    return Truth.known(on_call).unknown_at(not_told)
-
-
 @once
-def _on_call(context: DriveContext) -> tuple[Flags, Flags]:
-    """Masks of emergency vehicles with their blue lights on, and of vehicles that may be such."""
+def _on_call(context: DriveContext) -> Truth:
+    """Which are emergency vehicles with their blue lights on; unknown of unknown vehicles."""
     called = context.tracks.of_type("emergency_vehicle")[:, None]
     kinds = np.array([body.type == "unknown" for body in context.tracks.participants], dtype=bool)
     if not called.any():
         nobody = np.zeros(context.relevant.shape, dtype=bool)
-        return nobody, nobody | kinds[:, None]
+        return Truth(nobody, nobody | kinds[:, None])
     blue, told = lit_lamps(context, "blue_light")
     blue = flashing(blue, context)
-    return called & blue, (called & ~told & ~blue) | kinds[:, None]
+    return (called & Truth(blue, blue | ~told)).unknown_at(kinds[:, None])
 
 
-def _may_be_on_call(context: DriveContext) -> Flags:
-    """Mask of states in which ego may be on call, too: which of the two goes first is unknown."""
-    own = lamp_signals(context, frozenset({_OWN}))
-    truth = own.world[_OWN]
+def _ego_on_call(context: DriveContext) -> Truth:
+    """Whether ego is on call, too: which of the two goes first is then unknown."""
+    truth = lamp_signals(context, frozenset({_OWN})).world[_OWN]
     assert isinstance(truth, Truth)
-    return truth.possible
+    return truth
 
 
 def _comes_near(context: DriveContext) -> Flags:
@@ -201,7 +195,7 @@ def _is_silent(context: DriveContext, rows: NDArray[intp]) -> Flags:
 called_signals = SignalPasses(
     {
         "emergency_vehicle_near": _emergency_vehicle_near,
-        "on_call": about(_called),
+        "on_call": about(_on_call),
         "way_cleared": _way_cleared,
     }
 )

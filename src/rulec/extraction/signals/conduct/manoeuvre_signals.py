@@ -7,7 +7,7 @@ import numpy as np
 from rulec.array_types import Flags, Floats
 from rulec.extraction.computed_once import once
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.conduct.u_turns import may_turn_round, swings_round, u_turns
+from rulec.extraction.signals.conduct.u_turns import swings_round, u_turns
 from rulec.extraction.signals.ego_lanelets import beyond_edges, own_lanelets
 from rulec.extraction.signals.signal_columns import Measured
 from rulec.extraction.signals.signal_passes import SignalPasses
@@ -39,36 +39,36 @@ def _reversing(context: DriveContext) -> Truth:
     heading = context.ego.heading[0]
     forward = context.ego.vx[0] * np.cos(heading) + context.ego.vy[0] * np.sin(heading)
     error, least = context.ego.speed_error[0], context.thresholds.standing_kmh / KMH_PER_MPS
-    backs = forward < -least
-    unknown = np.abs(forward + least) < error
-    stays = _comes_back_nowhere(context, unknown | backs, backs)
-    backs, unknown = backs & ~stays, unknown & ~stays
-    unknown |= backs & ~_for_long(context, backs)
+    measured = forward < -least
+    backs = Truth.known(measured).unknown_at(np.abs(forward + least) < error)
+    goes_somewhere = ~_comes_back_nowhere(context, backs.possible, measured)
+    backs, measured = backs & goes_somewhere, measured & goes_somewhere
     spans, jumps = context.spans, _jumps(context)
-    unknown |= jumps
+    backs = backs.unknown_at(measured & ~_for_long(context, measured) | jumps)
     if not context.surroundings.states_all_headings:
         against = context.ego_extents.along[0] < -least
-        asked = spans.any(against) & ~jumps & ~spans.any(backs)
+        seems = may_back(context) & ~measured
+        asked = spans.any(against) & ~jumps & ~spans.any(measured)
         for number, columns in spans.those(asked):
-            unknown[columns] |= against[columns] & (not _tells_headings(context, number, columns))
-        unknown |= may_back(context) & ~backs
-    return Truth.known(backs).unknown_at(unknown)
+            seems[columns] |= against[columns] & (not _tells_headings(context, number, columns))
+        backs = backs.unknown_at(seems)
+    return backs
 
 
-def _comes_back_nowhere(context: DriveContext, perhaps: Flags, backs: Flags) -> Flags:
-    """Mask of runs of ``perhaps`` over which ego moves against its heading by too little.
+def _comes_back_nowhere(context: DriveContext, possible: Flags, backs: Flags) -> Flags:
+    """Mask of runs of ``possible`` over which ego moves against its heading by too little.
 
     That is by no more than places may be wrong; or, where it is never measured to reverse, by less
     than boxes of standing vehicles drift, however badly its speed is known.
     """
-    found, own = np.zeros_like(perhaps), context.ego
-    if not perhaps.any():
+    found, own = np.zeros_like(possible), context.ego
+    if not possible.any():
         return found
     spans, heading = context.spans, own.heading[0]
     x, y = (own.x[0], own.y[0])
     moved = [np.where(spans.begins_here, 0.0, at - spans.before(at)) for at in (x, y)]
     ahead = (moved[0] * np.cos(heading) + moved[1] * np.sin(heading)).cumsum()
-    for first, end in spans.runs(perhaps):
+    for first, end in spans.runs(possible):
         way = ahead[max(first - 1, int(spans.first[first])) : end]
         back = float((np.maximum.accumulate(way) - way).max())
         wrong = np.sqrt(2.0) * context.tolerances.place_m
@@ -129,38 +129,37 @@ def may_back(context: DriveContext) -> Flags:
     found, spans = np.zeros(context.states, dtype=bool), context.spans
     if context.wrong_way or context.surroundings.states_all_headings:
         return found
-    there, perhaps = oncoming_side(context)
-    if not there.any():
+    there = oncoming_side(context)
+    if not there.sure.any():
         return found
     speed, moves = context.ego.speed[0], context.ego_moves
-    own_side = _along_road(context) & _on_map(context) & ~at_junctions(context) & ~there & ~perhaps
+    own_side = _along_road(context) & _on_map(context) & ~at_junctions(context) & ~there.possible
     for first, end in spans.runs(moves):
         part, number = slice(first, end), int(spans.number[first])
-        slow = there[part].any() and speed[part].max() < BACKS_MPS and not own_side[part].any()
+        slow = there.sure[part].any() and speed[part].max() < BACKS_MPS and not own_side[part].any()
         found[part] = slow and not _tells_headings(context, number, spans.slices[number])
     # A vehicle that moves no other way in a drive may also stand the other way round
     return found | spans.all(found | ~moves) & spans.any(found)
 
 
 def _driving_side(context: DriveContext) -> Measured:
-    there, perhaps = oncoming_side(context)
-    sides = there.astype(int)
-    if perhaps.any():
-        perhaps = perhaps & ~_goes_over(context, there, perhaps)
-    perhaps = perhaps | may_back(context)
     if context.wrong_way:
-        sides, perhaps = np.full_like(sides, _SIDES.index("wrong_way")), perhaps & False
-    return Measured(sides, perhaps, texts=_SIDES)
+        return Measured(np.full(context.states, _SIDES.index("wrong_way")), texts=_SIDES)
+    there = oncoming_side(context)
+    doubtful = there.unknown
+    if doubtful.any():
+        doubtful &= ~_goes_over(context, there)
+    return Measured(there.sure.astype(int), doubtful | may_back(context), texts=_SIDES)
 
 
-def _goes_over(context: DriveContext, there: Flags, perhaps: Flags) -> Flags:
+def _goes_over(context: DriveContext, there: Truth) -> Flags:
     """Mask of states between one surely on one half of the road and one surely on the other.
 
     There only the moment is in doubt, unless ego stays near the middle beyond ``passed_s``.
     """
-    spans, own = context.spans, ~there & ~perhaps
+    spans = context.spans
     (own_before, own_after), (before, after) = (
-        (spans.latest(side), spans.next_state(side)) for side in (own, there)
+        (spans.latest(side), spans.next_state(side)) for side in (~there.possible, there.sure)
     )
     goes = (own_before > before) & (after < own_after)
     comes = (before > own_before) & (own_after < after)
@@ -175,8 +174,7 @@ def comes_back_over_middle(context: DriveContext) -> Flags:
 
     Not those in which it turns round, or has driven into a junction.
     """
-    there, _ = oncoming_side(context)
-    back = context.spans.enters(~there)
+    back = context.spans.enters(~oncoming_side(context).sure)
     if back.any():
         back &= (_beyond_far_edge(context) <= _loose(context)) & ~swings_round(context)
     return back
@@ -197,9 +195,7 @@ def about_the_middle(context: DriveContext) -> Flags:
     Where places are known so badly that a body which is certainly on one half may be wholly on it,
     no state on both halves need lead to those on the other.
     """
-    there, perhaps = oncoming_side(context)
-    about: Flags = there | perhaps | on_both_halves(context)
-    return about
+    return oncoming_side(context).possible | on_both_halves(context)
 
 
 def sides_beyond_far_edge(context: DriveContext, bodies: RoadExtents) -> tuple[Floats, Floats]:
@@ -212,23 +208,20 @@ def sides_beyond_far_edge(context: DriveContext, bodies: RoadExtents) -> tuple[F
 
 
 @once
-def oncoming_side(context: DriveContext) -> tuple[Flags, Flags]:
-    """Masks of ego driving along the other half of a two-way road, and of perhaps doing so.
+def oncoming_side(context: DriveContext) -> Truth:
+    """Whether ego drives along the other half of a two-way road.
 
     That half is beyond the far edge of the lanes of its direction; junctions have none.
     """
-    beyond, loose = _beyond_far_edge(context), _loose(context)
-    both_ways, not_told = two_way(context)
+    beyond = _beyond_far_edge(context)
     drives = _along_road(context) & ~at_junctions(context) & _on_map(context)
-    there = drives & both_ways & (beyond > loose)
-    return there, drives & (beyond > 0) & ((both_ways & (beyond <= loose)) | not_told)
+    return drives & two_way(context) & Truth(beyond > _loose(context), beyond > 0)
 
 
-def two_way(context: DriveContext) -> tuple[Flags, Flags]:
-    """Masks of states on a road with traffic both ways, and of those where the map does not say."""
+def two_way(context: DriveContext) -> Truth:
+    """Whether ego is on a road with traffic both ways, where the map says it."""
     directions = context.surroundings.directions
-    one_way, not_told = own_lanelets(context).told(lambda lanelet: directions(lanelet.id)[0])
-    return ~one_way & ~not_told, not_told
+    return ~own_lanelets(context).told(lambda lanelet: directions(lanelet.id)[0])
 
 
 def _loose(context: DriveContext) -> Floats:
@@ -271,7 +264,7 @@ def _on_map(context: DriveContext) -> Flags:
 
 
 def _u_turn(context: DriveContext) -> Truth:
-    return Truth.known(u_turns(context)).unknown_at(may_turn_round(context))
+    return u_turns(context)
 
 
 def _joins_road(context: DriveContext) -> Truth:
@@ -281,13 +274,13 @@ def _joins_road(context: DriveContext) -> Truth:
     map may leave out a road; and where it turns round, since its road is not certain yet.
     """
     outside = (beyond_near_edge(context) > _loose(context)) & _on_map(context)
-    inside, joins = beyond_near_edge(context) <= 0, np.zeros(context.states, dtype=bool)
-    perhaps = np.zeros(context.states, dtype=bool)
+    inside = beyond_near_edge(context) <= 0
+    joins, seems = np.zeros((2, context.states), dtype=bool)
     stands = outside & ~context.ego_moves
     reach, spans = context.steps_in(context.thresholds.setting_off_s), context.spans
     comes = (spans.enters(inside).nonzero()[0] - 1).tolist()
     if not comes:
-        return Truth.known(joins).unknown_at(perhaps)
+        return Truth.known(joins)
     last_inside, last_stood = spans.latest(inside), spans.latest(stands)
     for state in comes:
         left, stood, first = (
@@ -297,12 +290,12 @@ def _joins_road(context: DriveContext) -> Truth:
         )
         span = slice(max(stood, left, state - reach, first - 1) + 1, state + 2)
         if outside[span].any() or stood >= first:
-            (joins if stood > left and state - stood <= reach else perhaps)[span] = True
+            (joins if stood > left and state - stood <= reach else seems)[span] = True
+    truth = Truth(joins, joins | seems)
     if joins.any():
-        swings = swings_round(context) | may_turn_round(context)
-        round_ = context.spans.within(swings, reach, around=True)
-        perhaps, joins = perhaps | (joins & round_), joins & ~round_
-    return Truth(joins, joins | perhaps)
+        swings = swings_round(context) | u_turns(context).unknown
+        truth = truth.unknown_at(joins & context.spans.within(swings, reach, around=True))
+    return truth
 
 
 manoeuvre_signals = SignalPasses(

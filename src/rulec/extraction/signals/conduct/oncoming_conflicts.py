@@ -53,7 +53,7 @@ class _Stay(NamedTuple):
 
 
 def _holds_up_oncoming(context: DriveContext) -> Truth:
-    held, perhaps = np.zeros((2, *context.relevant.shape), dtype=bool)
+    held, seems_so = np.zeros((2, *context.relevant.shape), dtype=bool)
     far = sides_beyond_far_edge(context, context.ego_extents)[1][0]
     stays = _stays_over_the_middle(context, far)
     moves = context.tracks.of_type("road_user") & ~context.tracks.of_type("pedestrian")
@@ -70,8 +70,8 @@ def _holds_up_oncoming(context: DriveContext) -> Truth:
                 found = False
             if found is not None:
                 sure = found and stay.sure and seen == stay.first
-                (held if sure else perhaps)[row, stay.first : stay.end] = True
-    return Truth(held, held | perhaps)
+                (held if sure else seems_so)[row, stay.first : stay.end] = True
+    return Truth(held, held | seems_so)
 
 
 def _stays_over_the_middle(context: DriveContext, far: Floats) -> list[_Stay]:
@@ -80,13 +80,13 @@ def _stays_over_the_middle(context: DriveContext, far: Floats) -> list[_Stay]:
     Not for sure where the map does not say whether there is another direction, in junctions, where
     ways lead elsewhere, and where ego is there from the start. A sign may give it priority.
     """
-    both_ways, not_told = two_way(context)
-    over = (far > context.thresholds.touching_m) & (both_ways | not_told)
+    both_ways = two_way(context)
+    over = (far > context.thresholds.touching_m) & both_ways.possible
     over &= np.abs(context.ego_extents.turned[0]) <= _ALONG_RAD
     if not over.any():
         return []
     signs = own_lanelets(context).flags(lambda lanelet: _GOES_FIRST in lanelet.signs)
-    spans, unsure = context.spans, not_told | at_junctions(context)
+    spans, unsure = context.spans, ~both_ways.sure | at_junctions(context)
     return [
         _Stay(first, end, int(spans.end[first]), sure)
         for first, end in spans.runs(over)

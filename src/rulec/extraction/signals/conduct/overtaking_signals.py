@@ -33,19 +33,20 @@ def _overtaking(context: DriveContext) -> Truth:
     Unknown if ego goes there behind a vehicle and back: it may have given up; and where its drive
     begins there. For a standing vehicle, ego is there only as long as it takes to go round it.
     """
-    there, perhaps = oncoming_side(context)
+    there = oncoming_side(context).possible
     # Back for so short a time that `driving_side` takes it for noise does not count as back
     least = fewest_states(LEAST_S["driving_side"], context.recording.step_s)
-    side = there | perhaps | without_blips(there | perhaps, least, context.spans)
+    side = there | without_blips(there, least, context.spans)
     stands = context.standing & side
-    overtakes, unsure = _overtakes(context, ~stands)
+    overtakes = _overtakes(context, ~stands)
     if side.any():
         side = _with_all_that_joins(context, side, on_both_halves(context))
-        goes_round, may_go_round = _overtakes(context, stands & _near_enough_to_go_round(context))
-        overtakes = overtakes | goes_round | _meanwhile(context, overtakes, side)
-        perhaps = _meanwhile(context, unsure | _close_behind(context), side)
-        unsure = unsure | may_go_round | perhaps | _may_come_from_passing(context, side)
-    return Truth(overtakes, overtakes | unsure)
+        goes_round = _overtakes(context, stands & _near_enough_to_go_round(context))
+        sought = overtakes.or_possibly(_close_behind(context))
+        meanwhile = sought.each(lambda half: _meanwhile(context, half, side))
+        overtakes = overtakes | goes_round | meanwhile
+        overtakes = overtakes.or_possibly(_may_come_from_passing(context, side))
+    return overtakes
 
 
 def _with_all_that_joins(context: DriveContext, flags: Flags, more: Flags) -> Flags:
@@ -106,33 +107,31 @@ def _begins_to_overtake(context: DriveContext) -> Truth:
 
     Unknown where the drive ends before.
     """
-    overtakes, unsure = _overtakes(context, True)
-    horizon = context.steps_in(context.thresholds.parting_s)
-    spans = context.spans
-    begins, perhaps = (spans.within(flags, horizon) for flags in (overtakes, overtakes | unsure))
+    spans, horizon = context.spans, context.steps_in(context.thresholds.parting_s)
+    begins = _overtakes(context, True).each(lambda half: spans.within(half, horizon))
     moves_out = np.abs(context.ego_extents.across[0]) > _DRIFT_MPS
-    ends = moves_out & (spans.columns + horizon >= spans.end)
-    return Truth(begins, begins | perhaps | ends)
+    return begins.or_possibly(moves_out & (spans.columns + horizon >= spans.end))
 
 
-def _overtakes(context: DriveContext, whom: Flags | bool) -> tuple[Flags, Flags]:
-    """Masks of ego overtaking a slower vehicle or cycle, and of it perhaps doing so.
+def _overtakes(context: DriveContext, whom: Flags | bool) -> Truth:
+    """Whether ego overtakes a slower vehicle or cycle.
 
     An overtaking ego is at the far side, from shortly before it is beside the other until it is
     just past. ``whom``: mask of the others by state.
     """
-    nowhere = np.zeros(context.states, dtype=bool)
+    nowhere = Truth.known(np.zeros(context.states, dtype=bool))
     if not np.any(whom):
-        return nowhere, nowhere
+        return nowhere
     far = relations.LEFT_OF if context.side == "right" else relations.RIGHT_OF
     slower: Flags = (context.extents.along < context.ego_extents.along) & whom
     slower &= (relations.lateral(context) == far) & (context.driving_along | _ride_along(context))
     cells = Cells.at(slower)
     if not len(cells):
-        return nowhere, nowhere
+        return nowhere
     beside = cells.of(relations.station(context)) == relations.BESIDE
-    surely, perhaps = (_ahead_and_past(context, cells, tolerances) for tolerances in (0.0, 1.0))
-    return cells.in_columns(surely | beside), cells.in_columns(perhaps)
+    near, about = (_ahead_and_past(context, cells, tolerances) for tolerances in (0.0, 1.0))
+    overtakes = cells.in_columns(near | beside)
+    return Truth(overtakes, overtakes | cells.in_columns(about))
 
 
 def _ride_along(context: DriveContext) -> Flags:

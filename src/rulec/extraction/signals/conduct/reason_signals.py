@@ -63,14 +63,9 @@ _DRIVES_KMH = 30.0
 """A vehicle that is this fast later on has not broken down, nor is it towed."""
 
 
-def _cause_to_brake(context: DriveContext) -> Truth:
-    caused, unknown = _causes(context)
-    return Truth.known(caused).unknown_at(unknown)
-
-
 @once
-def _causes(context: DriveContext) -> tuple[Flags, Flags]:
-    """Masks of states with a reason to brake, stand or be slow, and of those perhaps with one.
+def _cause_to_brake(context: DriveContext) -> Truth:
+    """Whether there is a reason to brake, stand or be slow.
 
     Possible reasons are searched in all states; whether one surely applies, or surely does not,
     only where ego brakes hard, stands or is slow (``_asked``).
@@ -88,8 +83,8 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     brakes, asked = _asked(context)
     on_map = map_reasons(context, asked, reach)
     caused = on_map.does | led(context, brakes, reach) | waits_for_room(context)
-    perhaps = on_map.may.copy()
-    others = others_in(context, (~perhaps | (asked & ~caused)).nonzero()[0])
+    excuses = on_map.may.copy()
+    others = others_in(context, (~excuses | (asked & ~caused)).nonzero()[0])
     in_way, kept_back = may_be_others(context, others, reach)
     comes = np.zeros(context.states, dtype=bool)
     comes[others.states] = in_way
@@ -98,52 +93,52 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     if len(freely):
         there = others.part(freely)
         comes[there.states] |= may_come(context, there, reach)
-    perhaps |= comes
+    excuses |= comes
     if asked.any():
         caused |= asked & crossed(context, others, reach)
         waits, thinks = met(context, asked, reach)
         caused |= waits
-        perhaps |= on_map.freely & thinks
-    on_road = (~caused & (asked | ~perhaps)).nonzero()[0]
+        excuses |= on_map.freely & thinks
+    on_road = (~caused & (asked | ~excuses)).nonzero()[0]
     bends, too_fast = road_reasons(context, on_road, reach)
-    perhaps[on_road] |= bends
+    excuses[on_road] |= bends
     caused[on_road] |= too_fast
     # The mean still shows hard braking when its reason, such as a lower limit, is just gone
     shown = context.steps_in(context.thresholds.smoothing_s / 2)
-    perhaps |= brakes & spans.within_last(caused, shown)
+    excuses |= brakes & spans.within_last(caused, shown)
     # And it takes ego a moment to see that somebody will not come after all
     seen = shown + context.steps_in(context.thresholds.reaction_s)
-    perhaps |= brakes & spans.within_last(comes, seen)
+    excuses |= brakes & spans.within_last(comes, seen)
     if stands.any():
         caused |= stands & _since(context, caused & stands, _SETS_OFF_S)
-    # The rest only adds to ``perhaps``: a drive has the same words alone and with others
-    if (caused | perhaps).all():
-        return caused, ~caused
-    others = others.part((~(caused | perhaps)[others.states]).nonzero()[0])
+    # The rest only adds to ``excuses``: a drive has the same words alone and with others
+    if (caused | excuses).all():
+        return Truth(caused, caused | excuses)
+    others = others.part((~(caused | excuses)[others.states]).nonzero()[0])
     soon = context.steps_in(context.thresholds.preparing_s)
     if stands.any():
         broken_down = stands & ~_drives_on(context, stands)
-        perhaps |= spans.within(broken_down, soon) & ~(stands & _shows_no_hazard(context))
-        perhaps |= stands & spans.begins_here
+        excuses |= spans.within(broken_down, soon) & ~(stands & _shows_no_hazard(context))
+        excuses |= stands & spans.begins_here
         # A vehicle that is about to reverse has to stand before
         backs = context.ego_extents.along[0] * KMH_PER_MPS <= -context.thresholds.standing_kmh
-        perhaps |= stands & spans.within(backs, soon)
-    perhaps |= spans.columns + soon // 2 >= spans.end
+        excuses |= stands & spans.within(backs, soon)
+    excuses |= spans.columns + soon // 2 >= spans.end
     # Ego may want to get in behind a vehicle beside it, or let it in
-    perhaps[others.states] |= _beside(context, others) | _slow_beside(context, others)
-    perhaps[others.states] |= _called_near(context, others)
-    perhaps |= _seeks_a_gap(context)
+    excuses[others.states] |= _beside(context, others) | _slow_beside(context, others)
+    excuses[others.states] |= _called_near(context, others)
+    excuses |= _seeks_a_gap(context)
     least = context.ego.acceleration[0] - context.ego.acceleration_error[0]
-    perhaps |= (least <= -context.thresholds.braking_hard_mps2) & ~_followed(context)
+    excuses |= (least <= -context.thresholds.braking_hard_mps2) & ~_followed(context)
     if stands.any():
-        perhaps |= stands & _since(context, stands & (caused | perhaps), MOVES_OFF_S)
+        excuses |= stands & _since(context, stands & (caused | excuses), MOVES_OFF_S)
         # A vehicle that has just stopped may have seen another one that did not come after all
         looks = spans.within_last(~stands, context.steps_in(LOOKS_S))
-        perhaps |= on_map.freely & stands & looks
+        excuses |= on_map.freely & stands & looks
     if not _all_are_recorded(context):
         farther = (others.ahead > reach[others.states]) & (others.away <= _ROAD_M)
-        perhaps[others.states] |= ~farther.any(axis=0)
-    return caused, perhaps & ~caused
+        excuses[others.states] |= ~farther.any(axis=0)
+    return Truth(caused, caused | excuses)
 
 
 def _since(context: DriveContext, flags: Flags, seconds: float) -> Flags:
@@ -259,20 +254,12 @@ def _impedes(context: DriveContext) -> Truth:
     """
     limit, speed = context.limit_mps, context.ego.speed[0]
     told = np.isfinite(limit)
-    cycles = context.spans.spread([ego.type == "bicycle" for ego in context.ego.participants])
-    followed = _followed(context, _FALLS_BACK_MPS) & ~cycles
-    caused, perhaps = _causes(context)
+    below = Truth(told & (speed < _FAR_SLOWER * limit), ~told | (speed < _SLOWER * limit))
     gains = context.ego.acceleration[0] > context.thresholds.accelerating_mps2
-    slow = told & (speed < _FAR_SLOWER * limit) & context.ego_moves
-    far_slower = slow & ~gains & ~caused & ~perhaps
-    steps = context.steps_in(context.thresholds.preparing_s)
-    runs = context.spans.columns - context.spans.latest(~far_slower)
-    impedes = followed & (runs > steps)
-    slower = (~told | (speed < _SLOWER * limit)) & context.ego_moves & ~gains & ~caused
-    since = context.spans.latest(~slower)
-    # What was before its drive began is unknown
-    for_long = (context.spans.columns - since > steps) | (since < context.spans.first)
-    return Truth(impedes, impedes | followed & slower & for_long)
+    cycles = context.spans.spread([ego.type == "bicycle" for ego in context.ego.participants])
+    slow = below & context.ego_moves & ~gains & ~_cause_to_brake(context)
+    for_long = context.spans.lasting(slow, context.steps_in(context.thresholds.preparing_s))
+    return for_long & _followed(context, _FALLS_BACK_MPS) & ~cycles
 
 
 def _followed(context: DriveContext, slower_mps: float = np.inf) -> Flags:

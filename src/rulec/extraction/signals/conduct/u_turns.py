@@ -13,6 +13,7 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.scenario.recorded.reference_line import turn
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import zero_if_nan
 
 _ROUND_RAD, _ROUND_M, _JUMP_RAD = np.radians(150.0), 60.0, np.radians(60.0)
@@ -24,28 +25,30 @@ _LEAST_M = 2.0
 
 
 @once
-def u_turns(context: DriveContext) -> Flags:
-    """Mask of states in which ego, turning round on a short way, is across the road.
+def u_turns(context: DriveContext) -> Truth:
+    """Whether ego, turning round on a short way, is across the road.
 
     From the whole track, since ego is on another road once it has turned round. Not in junctions,
-    nor where the road itself turns.
+    nor where the road itself turns. Unknown where its track begins or ends meanwhile.
     """
-    turns = swings_round(context)
+    turns, seems = swings_round(context), _seems_to_turn_round(context)
     if turns.any():
         turns = turns & context.spans.any(turns & _leaves_road(context))
         turns &= ~context.spans.any(_touches_junction(context, turns))
-    return turns
+    if seems.any():
+        seems &= ~turns
+        seems &= ~context.spans.any(_touches_junction(context, seems))
+    return Truth(turns, turns | seems)
 
 
-@once
-def may_turn_round(context: DriveContext) -> Flags:
-    """Mask of states in which ego may be turning round: its track begins or ends meanwhile.
+def _seems_to_turn_round(context: DriveContext) -> Flags:
+    """Mask of states in which ego is across its road where its track begins or ends.
 
-    It is across its road so near to where it was first seen, and turns there, or has turned so far
-    near to where it was last seen.
+    So near to where it was first seen, and turns there, or has turned so far near to where it was
+    last seen.
     """
     tracks, columns = context.own.tracks, context.steps - context.own.tracks.first
-    turned, perhaps = np.abs(context.ego_extents.turned[0]), np.zeros(context.states, dtype=bool)
+    turned, seems = np.abs(context.ego_extents.turned[0]), np.zeros(context.states, dtype=bool)
     across = np.minimum(turned, np.pi - turned) >= _ACROSS_RAD
     for row, part in zip(context.ego.rows.tolist(), context.spans.slices, strict=True):
         if not across[part].any():
@@ -61,11 +64,8 @@ def may_turn_round(context: DriveContext) -> Flags:
             np.maximum.accumulate(since) - since, since - np.minimum.accumulate(since)
         )
         at = there.searchsorted(columns[part])
-        perhaps[part] = across[part] & (soon[at] | (swung[at] >= _ACROSS_RAD))
-    if perhaps.any():
-        perhaps &= ~u_turns(context)
-        perhaps &= ~context.spans.any(_touches_junction(context, perhaps))
-    return perhaps
+        seems[part] = across[part] & (soon[at] | (swung[at] >= _ACROSS_RAD))
+    return seems
 
 
 def _leaves_road(context: DriveContext) -> Flags:
@@ -97,9 +97,9 @@ def _turning_round(context: DriveContext) -> Flags:
     """Mask of states in which ego's heading is on its way round."""
     tracks = context.own.tracks
     columns = context.steps - tracks.first
-    may_turn, turning = _may_go_round(context), np.zeros(context.states, dtype=bool)
+    asked, turning = _may_go_round(context), np.zeros(context.states, dtype=bool)
     for row, part in zip(context.ego.rows.tolist(), context.spans.slices, strict=True):
-        if may_turn[row]:
+        if asked[row]:
             turning[part] = _goes_round(tracks, row)[columns[part]]
     return turning
 

@@ -34,13 +34,13 @@ def exit_clear(context: DriveContext) -> Caused:
     place is the last one that ego has reached, and before any the next one.
     """
     places = _places(context)
-    clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
+    clear, doubtful = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     stands = ~context.ego_moves
     entered = _entered(front, rear, places, context.thresholds.approach_m)
     if not any((entered == number).any() for number in range(len(places))):
         nobody = np.zeros(context.relevant.shape, dtype=bool)
-        return _room_beyond(context, clear, unknown, nobody)
+        return _room_beyond(context, Truth.known(clear), nobody)
     error = context.tolerances.place_m
     beyond = corner_ahead(context) + error
     ahead = _ahead_on_lane(context)
@@ -50,10 +50,10 @@ def exit_clear(context: DriveContext) -> Caused:
         nears, passed = entered == number, context.spans.any(rear >= end)
         place = _shared(context, start, end)
         stuck = (front - beyond > place) & (rear + beyond < end) & stands
-        perhaps = (front + error > place) & (rear - error < end) & stands
-        if not (nears & (~passed | context.spans.any(perhaps))).any():
+        about_there = (front + error > place) & (rear - error < end) & stands
+        if not (nears & (~passed | context.spans.any(about_there))).any():
             continue
-        short, may_be_short, stops, may_stop = (
+        short, short_for_all, stops, all_stop = (
             _free_beyond(context, those, (start, end)) < front - rear + ROOM_M
             for those in (ahead & ~still, ahead, ahead & ~still & holds_up, ahead & holds_up)
         )
@@ -63,11 +63,11 @@ def exit_clear(context: DriveContext) -> Caused:
         blocked = nears & short & same.any(axis=0)
         clear &= ~blocked
         nearest |= blocked & (ahead & ~still)
-        may_be = _until(context, perhaps & may_stop) | ~passed
-        unknown |= nears & may_be_short & ~blocked & may_be
+        seems_stuck = _until(context, about_there & all_stop) | ~passed
+        doubtful |= nears & short_for_all & ~blocked & seems_stuck
     where = np.where(nearest, context.extents.s_min, np.inf)
     nearest &= where == where.min(axis=0, initial=np.inf)
-    return _room_beyond(context, clear, unknown, nearest)
+    return _room_beyond(context, Truth(clear & ~doubtful, clear), nearest)
 
 
 def waits_for_room(context: DriveContext) -> Flags:
@@ -94,10 +94,8 @@ def _places(context: DriveContext) -> Stretches:
     return [*context.road.junctions, *context.road.crossings, *level_crossings(context)]
 
 
-def _room_beyond(context: DriveContext, clear: Flags, unknown: Flags, nearest: Flags) -> Caused:
-    return Caused(
-        Truth.known(clear).unknown_at(unknown & clear), ids_by_state(nearest, context.ids)
-    )
+def _room_beyond(context: DriveContext, clear: Truth, nearest: Flags) -> Caused:
+    return Caused(clear, ids_by_state(nearest, context.ids))
 
 
 def _until(context: DriveContext, flags: Flags) -> Flags:

@@ -54,11 +54,11 @@ def _at_junctions(context: DriveContext, junctions: Stretches) -> Flags:
 
 
 def _enters_junction(context: DriveContext) -> Truth:
-    enters, may_enter = np.zeros((2, context.states), dtype=bool)
+    enters, unseen = np.zeros((2, context.states), dtype=bool)
     for start, _ in context.road.junctions:
         enters |= passes(context, start)
-        may_enter |= may_have_passed(context, start)
-    return Truth.known(enters).unknown_at(may_enter)
+        unseen |= may_have_passed(context, start)
+    return Truth.known(enters).unknown_at(unseen)
 
 
 def _turns(context: DriveContext) -> SignalColumns:
@@ -69,16 +69,14 @@ def _turns(context: DriveContext) -> SignalColumns:
         turn[at_junction] = turn_at(context, start, end)
         bends |= at_junction & _bends_straight_on(context, start, end)
     bends &= turn != "straight_on"
-    unknown = way_not_known(context) | bends
+    not_told = way_not_known(context) | bends
     limits = context.thresholds
     leaves = ((turn != "straight_on") & ~bends) | _on_exit(context)
     prepares = _within_preparation(context, leaves, limits.standing_kmh)
     # In a creeping queue it is unknown since when
-    perhaps = _within_preparation(context, leaves | unknown, limits.walking_pace_kmh)
-    perhaps |= _may_turn_later(context)
-    return world_signals(
-        turn=Measured(turn, unknown), preparing_to_leave=Truth(prepares, prepares | perhaps)
-    )
+    longer = _within_preparation(context, leaves | not_told, limits.walking_pace_kmh)
+    preparing = Truth(prepares, prepares | longer | _may_turn_later(context))
+    return world_signals(turn=Measured(turn, not_told), preparing_to_leave=preparing)
 
 
 @drive_by_drive
@@ -86,12 +84,12 @@ def _all_way_stop(context: DriveContext) -> SignalColumns:
     """Whether all roads to the junction that ego nears or is in have stop signs."""
     if not _tells_stop_signs(context):
         return SignalColumns()
-    all_stop, unknown = np.zeros((2, context.states), dtype=bool)
+    sure, possible = np.zeros((2, context.states), dtype=bool)
     for passage in own_passages(context):
         stop = context.surroundings.passages.junctions[passage.junction].all_have_to_stop
-        all_stop[approach(context, passage)] = stop is True
-        unknown[approach(context, passage)] = stop is None
-    return SignalColumns({"all_way_stop": Truth(all_stop, all_stop | unknown)})
+        sure[approach(context, passage)] = stop is True
+        possible[approach(context, passage)] = stop is not False
+    return SignalColumns({"all_way_stop": Truth(sure, possible)})
 
 
 def _tells_stop_signs(context: DriveContext) -> bool:
@@ -119,15 +117,15 @@ def _on_exit(context: DriveContext) -> Flags:
 def way_not_known(context: DriveContext) -> Flags:
     """Mask of states at a junction where the drive does not show which way ego takes."""
     rear = context.ego_extents.s_min[0]
-    unknown = np.zeros(context.states, dtype=bool)
+    not_known = np.zeros(context.states, dtype=bool)
     for start, end in context.road.junctions:
         at_junction = _at_junctions(context, [(start, end)])
         ends = context.spans.any(at_junction) & ~context.spans.any(rear >= end)
         for number, columns in context.spans.those(ends):
             parts = _ways_part(context, start, columns)
             if parts and not _on_known_way(context, (start, end), number):
-                unknown[columns] |= at_junction[columns]
-    return unknown
+                not_known[columns] |= at_junction[columns]
+    return not_known
 
 
 def at_unknown_way(context: DriveContext, rows: NDArray[intp]) -> Flags:
@@ -219,15 +217,15 @@ def _crosses_stop_line(context: DriveContext) -> Truth | None:
     """
     if not _tells_stop_signs(context):
         return None
-    crosses, may_cross = np.zeros((2, context.states), dtype=bool)
+    crosses, unseen = np.zeros((2, context.states), dtype=bool)
     front, ends = own_front(context), context.spans.columns == context.spans.end - 1
     for _, _, on_lane, first, last in own_lines(context, has_stop_sign):
         unsure = (may_pass(context, last) | may_have_passed(context, last)) & on_lane
         crosses |= passes(context, last) & on_lane & ~unsure
         on_it = (first < front) & (front <= last) & on_lane
-        may_cross |= unsure | (ends & on_it & context.ego_moves)
-    may_cross |= context.ego_moves & may_hold(context, STOP_SIGNS)
-    return Truth(crosses, crosses | may_cross)
+        unseen |= unsure | (ends & on_it & context.ego_moves)
+    unseen |= context.ego_moves & may_hold(context, STOP_SIGNS)
+    return Truth(crosses, crosses | unseen)
 
 
 @once

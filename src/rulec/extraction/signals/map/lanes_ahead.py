@@ -131,14 +131,14 @@ def leads_elsewhere(context: DriveContext) -> Truth:
     that they will take.
     """
     others, reach = context.extents, context.thresholds.approach_m
-    elsewhere, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
+    elsewhere, untold = np.zeros((2, *context.relevant.shape), dtype=bool)
     # Riders near ego's road, but on lanes of another one
     elsewhere |= context.relevant & context.tracks.on_lane & ~context.on_lanes
     end, parted = _parted_at_the_end(context)
     if parted.any():
         near = context.on_lanes & (context.road.line.length - others.s_max <= reach)
         near &= others.s >= end
-        unknown |= near & parted[np.clip(others.lane, 0, len(parted) - 1)]
+        untold |= near & parted[np.clip(others.lane, 0, len(parted) - 1)]
     rings = {begins for begins, _, at_junction in roundabouts(context) if at_junction}
     for junction in junctions_ahead(context):
         there = context.relevant & (others.s <= junction.high)
@@ -146,15 +146,15 @@ def leads_elsewhere(context: DriveContext) -> Truth:
         for row in there.any(axis=1).nonzero()[0].tolist():
             for passage in _passages_at(context, row, junction):
                 inside = (context.columns >= passage.first) & (context.columns <= passage.last)
-                surely, perhaps = _is_on_another_way(context, passage, junction)
-                elsewhere[row] |= there[row] & inside & surely
-                unknown[row] |= there[row] & inside & perhaps
+                other, told = _is_on_another_way(context, passage, junction)
+                elsewhere[row] |= there[row] & inside & other
+                untold[row] |= there[row] & inside & (not told)
         # One that waits there may be past the place where the junction begins for ego
         near = context.on_lanes & (others.s <= junction.high)
         near &= junction.low - others.s_max <= reach
         if not near.any():
             continue
-        unknown |= near & (junction.low in rings) & (others.lane != context.ego_lane)
+        untold |= near & (junction.low in rings) & (others.lane != context.ego_lane)
         lane = np.clip(others.lane, 0, len(junction.leads) - 1)
         away, both = (
             np.array([leads is kind for leads in junction.leads])[lane]
@@ -164,8 +164,8 @@ def leads_elsewhere(context: DriveContext) -> Truth:
         for row in (near & both).any(axis=1).nonzero()[0].tolist():
             turns_off = _turns_off(context, row, junction)
             elsewhere[row] |= near[row] & both[row] & bool(turns_off)
-            unknown[row] |= near[row] & both[row] & (turns_off is None)
-    return Truth(elsewhere, elsewhere | unknown)
+            untold[row] |= near[row] & both[row] & (turns_off is None)
+    return Truth(elsewhere, elsewhere | untold)
 
 
 @once_a_road
@@ -219,9 +219,9 @@ def _turns_off(context: DriveContext, row: int, junction: JunctionAhead) -> bool
 def _is_on_another_way(
     context: DriveContext, passage: Passage, junction: JunctionAhead
 ) -> tuple[bool, bool]:
-    """Whether a participant passes a junction on another way than ego's, and perhaps does.
+    """Whether a participant passes a junction on another way than ego's, and whether that is told.
 
-    It came on another road, as its direction then shows, or it turns differently. Perhaps: where
+    It came on another road, as its direction then shows, or it turns differently. Not told where
     its track does not show its way.
     """
     passages = context.surroundings.passages
@@ -229,8 +229,8 @@ def _is_on_another_way(
     came_from = context.road.line.heading_at(junction.low - _HAIR_M)
     came = abs(turn(came_from, passage.heading)) > np.radians(context.thresholds.turned_deg)
     leaves = not _goes_along(context, passages.way(passage), junction.turned)
-    surely = bool(came and not begins) or (passage.sure and bool(came or leaves))
-    return surely, not surely and not passage.sure and (begins or leaves)
+    other = bool(came and not begins) or (passage.sure and bool(came or leaves))
+    return other, other or passage.sure or not (begins or leaves)
 
 
 @once_a_recording

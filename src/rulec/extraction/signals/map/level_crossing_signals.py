@@ -25,13 +25,13 @@ def _zones(context: DriveContext) -> SignalColumns:
     if not _tells_rails(context):
         return SignalColumns()
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    enters, may_enter = np.zeros((2, context.states), dtype=bool)
+    enters, unseen = np.zeros((2, context.states), dtype=bool)
     zone = reach_into(level_crossings(context), rear, front, context.thresholds.zone_m)
     for start, _ in level_crossings(context):
         enters |= context.spans.enters(front > start)
-        may_enter |= may_have_passed(context, start, front)
+        unseen |= may_have_passed(context, start, front)
     # Those of a net have gates that close while a train comes
-    entering = Truth.known(enters).unknown_at(may_enter)
+    entering = Truth.known(enters).unknown_at(unseen)
     return world_signals(level_crossing_zone=zone, enters_level_crossing=entering, guarded=zone)
 
 

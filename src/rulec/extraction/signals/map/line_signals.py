@@ -60,16 +60,14 @@ def _to_line(context: DriveContext) -> SignalColumns:
     ahead = far > 0
 
     def seconds(distance: Floats, at_mps: Floats) -> Floats:
-        may_drive = drives & (at_mps > 0)
-        taken = np.minimum(distance / np.where(may_drive, at_mps, 1.0), LONGEST_S)
-        return np.where(ahead, np.where(may_drive, taken, LONGEST_S), 0.0)
+        goes = drives & (at_mps > 0)
+        taken = np.minimum(distance / np.where(goes, at_mps, 1.0), LONGEST_S)
+        return np.where(ahead, np.where(goes, taken, LONGEST_S), 0.0)
 
     times = seconds(near, speed + error), seconds(far, speed - error)
     return world_signals(
         distance_to_stop_line=Measured(rounded(way), bounds=rounded_outward(near, far)),
-        time_to_stop_line=Measured(
-            rounded(seconds(way, speed)), bounds=rounded_outward(*times)
-        ),
+        time_to_stop_line=Measured(rounded(seconds(way, speed)), bounds=rounded_outward(*times)),
     )
 
 
@@ -115,27 +113,27 @@ def _traffic_lights(context: DriveContext) -> SignalColumns:
     if not (nowhere or complete or map_contents(context).lights):
         return SignalColumns()
     front = own_front(context)
-    light, crosses, may_cross = own_light(context)
+    light, crosses = own_light(context)
     unseen = front + context.thresholds.light_reach_m > context.road.borders[-1]
     untold = (light == "") | (unseen & nowhere & (not complete))
     return world_signals(
         light=Measured(light, untold),
-        crosses_light_line=Truth.known(crosses).unknown_at(may_cross),
+        crosses_light_line=crosses,
     )
 
 
 @once
-def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
-    """The light for ego (empty if unknown), and masks of crossing its line: surely and perhaps.
+def own_light(context: DriveContext) -> tuple[SignalColumn, Truth]:
+    """The light for ego (empty if unknown), and whether ego crosses its line.
 
-    In the state in which ego crosses the line, the light is still the one that it crosses. Perhaps:
+    In the state in which ego crosses the line, the light is still the one that it crosses. Unknown:
     where ego may have crossed it (``may_pass``, ``may_stop_beyond``, ``may_have_passed``), and for
     amber lights crossed at a place where it is unknown whether ego approached slowly enough to stop
     at once.
     """
     front = own_front(context)
     colours = np.full(context.states, "no_light", dtype="<U11")
-    crosses, may_cross = np.zeros((2, context.states), dtype=bool)
+    crosses, doubtful = np.zeros((2, context.states), dtype=bool)
     slow = context.ego.speed[0] * KMH_PER_MPS <= context.thresholds.stops_at_once_kmh
     for piece, lane, on_lane, first, last in own_lines(context, lambda at: at.lights):
         lights = lights_of(context.recording, context.road, piece, lane)
@@ -145,7 +143,7 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
         unseen = may_have_passed(context, last) & on_lane
         unsure = unseen | (may_pass(context, last) & on_lane)
         crossed = passes(context, last) & ~unsure
-        may_cross |= unsure | (may_stop_beyond(context, (first, last)) & on_lane)
+        doubtful |= unsure | (may_stop_beyond(context, (first, last)) & on_lane)
         ahead = ((front <= last) | unsure) & (front > first - context.thresholds.light_reach_m)
         while_crossing = around_crossing(context, front, (first, last))
         every = context.road.lanelet(piece, lane).lights
@@ -168,10 +166,10 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
             colours[state] = shown.pop() if len(shown) == 1 else ""
             at_place = slow[[*moments]]
             amber = colours[state] == _AMBER and last - first > context.thresholds.touching_m
-            may_cross[state] |= crossed[state] and amber and at_place.any() and not at_place.all()
+            doubtful[state] |= crossed[state] and amber and at_place.any() and not at_place.all()
     for state in _between_lights(context, colours, crosses):
         crosses[state], colours[state] = True, ""
-    return colours, crosses, may_cross
+    return colours, Truth.known(crosses).unknown_at(doubtful)
 
 
 def _colours_unseen(

@@ -95,13 +95,13 @@ def _crossing_zone(context: DriveContext) -> Truth | None:
     if not crossings_told(context):
         return None
     distance, zone = distance_to_crossing(context), context.thresholds.zone_m
-    near, unknown = distance <= zone, abs(distance - zone) < context.tolerances.place_m
-    unknown = _in_doubt(context, near, unknown)
+    near, doubtful = distance <= zone, abs(distance - zone) < context.tolerances.place_m
+    doubtful = _in_doubt(context, near, doubtful)
     # If only ego's rear is left on a crossing, laws do not say whether it is still there
     _, end = next_crossing(context)
     half_step_m = np.maximum(context.ego_extents.along[0], 0.0) * context.recording.step_s / 2
-    unknown |= context.ego_extents.s_max[0] + half_step_m > end - context.tolerances.place_m
-    return Truth.known(near).unknown_at(unknown)
+    doubtful |= context.ego_extents.s_max[0] + half_step_m > end - context.tolerances.place_m
+    return Truth.known(near).unknown_at(doubtful)
 
 
 def _limit(context: DriveContext) -> Measured | None:
@@ -121,27 +121,18 @@ def _minimum_limit(context: DriveContext) -> Measured | None:
 
 def _signs(context: DriveContext) -> SignalColumns:
     known = map_contents(context).signs | context.recording.complete
-    values, unknown = dict[str, Flags](), dict[str, Flags]()
+    found: dict[str, Truth] = {}
     for name, (signs, at_line) in _SIGNS.items():
         if signs & known:
-            may = may_hold(context, signs)
             if at_line:
-                values[name], unseen = _holds_to_line(
-                    context, signs, of_junction=name in _OVERRULED
-                )
-                may = may | unseen
+                holds = _holds_to_line(context, signs, of_junction=name in _OVERRULED)
             else:
-                values[name] = own_lanelets(context).flags(_has_sign(signs))
-            unknown[name] = may & ~values[name]
-    if map_contents(context).lights:
-        light, _, _ = own_light(context)
-        at_work = np.isin(light, _AT_WORK)
-        for name in set(_OVERRULED) & values.keys():
-            unknown[name] = (values[name] & (light == "")) | (unknown[name] & ~at_work)
-            values[name] = values[name] & ~at_work
-    return SignalColumns(
-        {name: Truth.known(own).unknown_at(unknown[name]) for name, own in values.items()}
-    )
+                holds = Truth.known(own_lanelets(context).flags(_has_sign(signs)))
+            found[name] = holds.or_possibly(may_hold(context, signs))
+            if name in _OVERRULED and map_contents(context).lights:
+                light, _ = own_light(context)
+                found[name] &= Truth(~np.isin(light, (*_AT_WORK, "")), ~np.isin(light, _AT_WORK))
+    return SignalColumns(found)
 
 
 def _has_sign(signs: Set[str]) -> Callable[[Lanelet], bool]:
@@ -152,17 +143,15 @@ def _is_of(kind: str) -> Callable[[Lanelet], bool]:
     return lambda lanelet: kind in lanelet.types
 
 
-def _holds_to_line(
-    context: DriveContext, signs: Set[str], *, of_junction: bool
-) -> tuple[Flags, Flags]:
-    """Masks of states in which one of these signs holds, up to its line, and perhaps holds.
+def _holds_to_line(context: DriveContext, signs: Set[str], *, of_junction: bool) -> Truth:
+    """Whether one of these signs holds, up to its line.
 
     Decided by the place of ego's front one state before, so that the sign still holds when ego
-    crosses the line; perhaps where ego may just have crossed it. A sign ``of_junction`` determines
+    crosses the line; unknown where ego may just have crossed it. A sign ``of_junction`` determines
     priority there: it holds until ego drives in, as some lines are a few metres before that.
     """
     before = context.spans.before(own_front(context))
-    holds, perhaps = np.zeros((2, context.states), dtype=bool)
+    holds, unseen = np.zeros((2, context.states), dtype=bool)
     for piece, row in enumerate(context.road.rows):
         if any(lanelet is not None and signs & lanelet.signs for lanelet in row):
             begins = float(context.road.borders[piece])
@@ -173,8 +162,8 @@ def _holds_to_line(
                         line = max(line, _next_junction(context, first))
                     there = (before >= begins) & (before <= line)
                     holds |= there & (context.ego_lane == lane)
-                    perhaps |= may_have_passed(context, line) & (context.ego_lane == lane)
-    return holds, perhaps
+                    unseen |= may_have_passed(context, line) & (context.ego_lane == lane)
+    return Truth(holds, holds | unseen)
 
 
 def _next_junction(context: DriveContext, line: float) -> float:

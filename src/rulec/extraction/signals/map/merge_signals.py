@@ -38,7 +38,7 @@ _WAY_M = 30.0
 def _narrowings(context: DriveContext) -> SignalColumns:
     reach = context.thresholds.approach_m
     front, lane = context.ego_extents.s_max[0], context.ego_lane
-    narrowing, merged, perhaps = np.zeros((3, context.states), dtype=bool)
+    narrowing, merged, about_there = np.zeros((3, context.states), dtype=bool)
     abreast, perhaps_abreast = np.zeros((2, *context.relevant.shape), dtype=bool)
     lets_in = _could_let_in(context)
     for place, right, sure in merges(context):
@@ -55,12 +55,12 @@ def _narrowings(context: DriveContext) -> SignalColumns:
             abreast |= beside & there & lets_in
             perhaps_abreast |= beside & (lost | (there & ~lets_in))
         else:
-            perhaps |= on_one & (np.abs(front - place) <= reach)
+            about_there |= on_one & (np.abs(front - place) <= reach)
             perhaps_abreast |= beside
     return SignalColumns(
         {
-            "narrowing": Truth(narrowing, narrowing | perhaps),
-            "merged": Truth(merged, merged | perhaps),
+            "narrowing": Truth(narrowing, narrowing | about_there),
+            "merged": Truth(merged, merged | about_there),
         },
         {"abreast_at_narrowing": Truth(abreast, abreast | perhaps_abreast)},
     )

@@ -39,8 +39,7 @@ _LANE_KINDS = {
 def _built_up(context: DriveContext) -> Truth | None:
     if not _SETTINGS & map_contents(context).types:
         return None
-    town, unknown = own_lanelets(context).told(_town(context))
-    return Truth.known(town).unknown_at(unknown)
+    return own_lanelets(context).told(_town(context))
 
 
 def _road_class(context: DriveContext) -> Measured | None:
@@ -62,9 +61,9 @@ def _ways(context: DriveContext) -> SignalColumns:
         "divided": own_lanelets(context).told(lambda at: directions(at)[1]),
     }
     told = {
-        name: Truth.known(holds).unknown_at(dark)
-        for name, (holds, dark) in ways.items()
-        if spans.agreed((~spans.all(dark))[spans.begins].tolist())
+        name: holds
+        for name, holds in ways.items()
+        if spans.agreed((~spans.all(holds.unknown))[spans.begins].tolist())
     }
     return SignalColumns(told)
 

@@ -28,14 +28,15 @@ _SIGNS: Mapping[str, frozenset[str]] = {
 def _rings(context: DriveContext) -> SignalColumns:
     road = context.road
     front, middle = context.ego_extents.s_max[0], context.ego_extents.s[0]
-    inside, enters, may_enter = np.zeros((3, context.states), dtype=bool)
-    words = {name: np.zeros(context.states, dtype=bool) for name in _SIGNS}
-    unknown = {name: np.zeros(context.states, dtype=bool) for name in _SIGNS}
+    inside, enters, unseen = np.zeros((3, context.states), dtype=bool)
+    holds, holds_possibly = (
+        {name: np.zeros(context.states, dtype=bool) for name in _SIGNS} for _ in range(2)
+    )
     known = context.recording.complete | map_contents(context).signs
     for begins, end, _ in roundabouts(context):
         inside |= (middle > begins) & (middle < end)
         enters |= context.spans.enters(front > begins)
-        may_enter |= may_have_passed(context, begins, front)
+        unseen |= may_have_passed(context, begins, front)
         nears = (front > begins - context.thresholds.approach_m) & (middle < end)
         before = [
             row
@@ -44,11 +45,12 @@ def _rings(context: DriveContext) -> SignalColumns:
         ]
         there = [x for row in before for x in row if x is not None]
         for name, signs in _SIGNS.items():
-            may = any(signs & x.untold_signs for x in there) or signs.isdisjoint(known)
-            words[name] |= nears & any(signs & x.signs for x in there)
-            unknown[name] |= nears & may
-    told = {name: Truth(own, own | unknown[name]) for name, own in words.items()}
-    entering = Truth.known(enters).unknown_at(may_enter)
+            untold = any(signs & x.untold_signs for x in there) or signs.isdisjoint(known)
+            has_sign = any(signs & x.signs for x in there)
+            holds[name] |= nears & has_sign
+            holds_possibly[name] |= nears & (has_sign or untold)
+    told = {name: Truth(holds[name], holds_possibly[name]) for name in _SIGNS}
+    entering = Truth.known(enters).unknown_at(unseen)
     return world_signals(roundabout=inside, enters_roundabout=entering, **told)
 
 

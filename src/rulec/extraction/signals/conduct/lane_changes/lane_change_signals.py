@@ -15,18 +15,19 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lane_changes.indicator_signals import indicator
 from rulec.extraction.signals.conduct.lane_changes.lanes_from_behind import come_into_lane
 from rulec.extraction.signals.conduct.lane_changes.squeezing_in import WayIn, squeezed
-from rulec.extraction.signals.conduct.lane_changes.turning_round import has_to_brake_for_turn
+from rulec.extraction.signals.conduct.lane_changes.turning_round import have_to_brake_for_turn
 from rulec.extraction.signals.conduct.leaving_rings import crossed_on_ring
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     beyond_near_edge,
     comes_back_over_middle,
 )
-from rulec.extraction.signals.conduct.u_turns import may_turn_round, swings_round, u_turns
+from rulec.extraction.signals.conduct.u_turns import swings_round, u_turns
 from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.signal_columns import Caused, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.route import lanelet_area
+from rulec.trace.cells import Cells
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import begin_runs, distinct
 
@@ -55,19 +56,20 @@ def _lane_change(context: DriveContext) -> Truth:
     a ring over a lane on which another one goes on.
     """
     changes = _changes(context)
-    unknown = (changes != _changes_from_beside(context)) | _astride(context)
+    doubtful = (changes != _changes_from_beside(context)) | _astride(context)
+    doubtful |= np.logical_or.reduce(crossed_on_ring(context))
     if changes.any():
-        swings = swings_round(context) | may_turn_round(context) | lies_askew_in_turn(context)
+        swings = swings_round(context) | u_turns(context).unknown | lies_askew_in_turn(context)
         stands = np.abs(_speed_ahead(context)) * KMH_PER_MPS < context.thresholds.standing_kmh
-        unknown |= _within_tolerance(context, changes) | _there_and_back(context, changes)
-        unknown |= changes & (swings | stands)
-        states = (changes & ~unknown).nonzero()[0]
+        doubtful |= _within_tolerance(context, changes) | _there_and_back(context, changes)
+        doubtful |= changes & (swings | stands)
+        states = (changes & ~doubtful).nonzero()[0]
         own = context.ego_extents.s[0]
         places = (context.road.piece(own[at]).tolist() for at in (states, states - 1))
         for change, piece, before in zip(states.tolist(), *places, strict=True):
-            unknown[change] = _at_fork(context, change, piece) or _at_merge(context, change, before)
-    unknown |= np.logical_or.reduce(crossed_on_ring(context))
-    return Truth.known(changes).unknown_at(unknown)
+            at_once = _at_fork(context, change, piece) or _at_merge(context, change, before)
+            doubtful[change] = at_once
+    return Truth.known(changes).unknown_at(doubtful)
 
 
 def _speed_ahead(context: DriveContext) -> Floats:
@@ -177,7 +179,8 @@ def _lane_is_clear(context: DriveContext) -> Caused:
     flagged, ways, is_perhaps = _ways_into_lanes(context)
     if ways:
         states = np.array([way.state for way in ways], dtype=intp)
-        found, perhaps = _disturbed(context, states)
+        brakes = _disturbed(context, states)
+        found = brakes.sure
         no_room, maybe_none = squeezed(context, ways)
         in_lane = context.extents.lane[:, states] == context.ego_lane[states]
         in_lane |= found & ~context.in_ego_lane[:, states]
@@ -185,13 +188,12 @@ def _lane_is_clear(context: DriveContext) -> Caused:
         moot[flagged] = ~np.logical_or.reduce(surely)
         # Who is about to be past or only reaches into the lane is not named beside who is in it
         disturbed[:, flagged] = np.where(moot[flagged], found, surely)
-        unsure[flagged] = perhaps.any(axis=0) | maybe_none.any(axis=0)
-    brakes, may_brake = has_to_brake_for_turn(context, u_turns(context))
-    disturbed |= brakes
-    may_brake |= np.logical_or(*has_to_brake_for_turn(context, may_turn_round(context)))
-    unsure |= may_brake.any(axis=0)
+        unsure[flagged] = brakes.unknown.any(axis=0) | maybe_none.any(axis=0)
+    for_turn = have_to_brake_for_turn(context)
+    disturbed |= for_turn.sure
+    unsure |= for_turn.unknown.any(axis=0)
     clear: Flags = ~np.logical_or.reduce(disturbed)
-    unknown = unsure
+    doubtful = unsure
     if not clear.all():
         # Or may stand, by its speed's error
         slowest = context.ego.speed[0] - context.ego.speed_error[0]
@@ -200,9 +202,9 @@ def _lane_is_clear(context: DriveContext) -> Caused:
         stands |= _changes(context) & context.spans.within_last(stands, just_stood)
         only_perhaps = np.zeros_like(clear)
         only_perhaps[flagged[is_perhaps]] = True
-        unknown = np.where(clear, unsure, moot | stands | only_perhaps)
-    unknown |= clear & np.logical_or.reduce(crossed_on_ring(context))
-    return Caused(Truth.known(clear).unknown_at(unknown), ids_by_state(disturbed, context.ids))
+        doubtful = np.where(clear, unsure, moot | stands | only_perhaps)
+    doubtful |= clear & np.logical_or.reduce(crossed_on_ring(context))
+    return Caused(Truth.known(clear).unknown_at(doubtful), ids_by_state(disturbed, context.ids))
 
 
 def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn], Flags]:
@@ -228,11 +230,11 @@ def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn],
     far = context.lane_edges[to_left]
     ways += [WayIn(at, int(far[at]), to_left=not to_left) for at in back]
     surely = changes + flagged + back
-    perhaps = _changes_from_beside(context).nonzero()[0].tolist()
-    perhaps = [at for at in perhaps if at not in surely]
-    ways += [_way_between(context.steady_lane_from_beside, at) for at in perhaps]
-    is_perhaps = np.repeat([False, True], [len(surely), len(perhaps)])
-    return np.array(surely + perhaps, dtype=intp), ways, is_perhaps
+    others = _changes_from_beside(context).nonzero()[0].tolist()
+    others = [at for at in others if at not in surely]
+    ways += [_way_between(context.steady_lane_from_beside, at) for at in others]
+    is_perhaps = np.repeat([False, True], [len(surely), len(others)])
+    return np.array(surely + others, dtype=intp), ways, is_perhaps
 
 
 def _way_between(lanes: NDArray[intp], at: int) -> WayIn:
@@ -271,12 +273,12 @@ def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
     return unsure
 
 
-def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Flags]:
-    """Masks of vehicles in ego's lane that must brake for ego in ``states``, and perhaps must.
+def _disturbed(context: DriveContext, states: NDArray[intp]) -> Truth:
+    """Which vehicles in ego's lane must brake for ego in ``states``.
 
     A vehicle beside ego must; so must one behind that would have to brake harder than
     ``disturbing_mps2`` after its reaction time to avoid ego, unless it has to brake as hard for one
-    in between. Perhaps: vehicles whose lane forks in between, so that it is unknown whether they
+    in between. Unknown: vehicles whose lane forks in between, so that it is unknown whether they
     come into ego's; and bodies that overlap ego's by half, which are ego's own box seen twice.
     """
     limits = context.thresholds
@@ -288,13 +290,9 @@ def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Fla
     behind = (station == relations.IN_FRONT_OF) & too_near
     behind &= ~_brakes_for_another(context, states, behind)
     brakes = context.going_along[:, states] & (behind | (station == relations.BESIDE))
-    disturbed, perhaps = np.zeros((2, *brakes.shape), dtype=bool)
-    rows, numbers = brakes.nonzero()
-    disturbed[rows, numbers], perhaps[rows, numbers] = come_into_lane(
-        context, rows, states[numbers]
-    )
-    twice = disturbed & _lies_in_ego(context, states)
-    return disturbed & ~twice, perhaps | twice
+    cells = Cells.at(brakes)
+    comes = come_into_lane(context, cells.rows, states[cells.columns])
+    return comes.each(cells.laid).unknown_at(cells.laid(comes.sure) & _lies_in_ego(context, states))
 
 
 def _lies_in_ego(context: DriveContext, states: NDArray[intp]) -> Flags:

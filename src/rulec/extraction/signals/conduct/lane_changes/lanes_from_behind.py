@@ -10,9 +10,9 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.array_types import Flags
 from rulec.extraction.computed_once import once_a_road
 from rulec.extraction.drive_context import DriveContext
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import zero_if_nan
 
 _BEYOND_M = 15.0
@@ -31,32 +31,27 @@ class _Ways:
         return self.leaves or len(self.lanes) > 1
 
 
-def come_into_lane(
-    context: DriveContext, rows: NDArray[intp], states: NDArray[intp]
-) -> tuple[Flags, Flags]:
-    """Which vehicles behind ego come into the lane of its middle, and which perhaps do.
+def come_into_lane(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -> Truth:
+    """Which vehicles behind ego come into the lane of its middle.
 
     One per row and state; where ways part, decided by the vehicle's track, which may not suffice.
     Vehicles on the same lane do if it does not fork between the two; vehicles whose lane ends there
     do not, since they have to change lanes themselves.
     """
-    comes, perhaps = comes_from_before(context, rows, states)
     theirs, egos = _pieces(context, rows, states)
-    comes &= (theirs < egos) | context.in_ego_lane[rows, states]
-    return comes, perhaps
+    inside = (theirs < egos) | context.in_ego_lane[rows, states]
+    return comes_from_before(context, rows, states) & inside
 
 
-def comes_from_before(
-    context: DriveContext, rows: NDArray[intp], states: NDArray[intp]
-) -> tuple[Flags, Flags]:
+def comes_from_before(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -> Truth:
     """``come_into_lane``, with those on the same piece of the road as ego coming, wherever."""
-    comes, perhaps = np.ones(len(rows), dtype=bool), np.zeros(len(rows), dtype=bool)
+    sure, possible = np.ones((2, len(rows)), dtype=bool)
     theirs, egos = _pieces(context, rows, states)
     for number in (theirs < egos).nonzero()[0].tolist():
         pieces = int(theirs[number]), int(egos[number])
         found = _comes_by_its_way(context, int(rows[number]), int(states[number]), pieces)
-        comes[number], perhaps[number] = found is True, found is None
-    return comes, perhaps
+        sure[number], possible[number] = found is True, found is not False
+    return Truth(sure, possible)
 
 
 def _pieces(

@@ -66,10 +66,10 @@ def squeezed(context: DriveContext, ways: Sequence[WayIn]) -> tuple[Flags, Flags
     gave_way, unsure = _gives_way(context, begins, reaches, changes)
     every = unsure | close | gave_way
     rows, numbers = every.nonzero()
-    comes, may_come = comes_from_before(context, rows, changes[numbers])
-    every[rows, numbers] = comes | may_come
+    comes = comes_from_before(context, rows, changes[numbers])
+    every[rows, numbers] = comes.possible
     sure = (close | gave_way) & every & ~_lane_ends(context, begins)
-    sure[rows, numbers] &= comes
+    sure[rows, numbers] &= comes.sure
     return sure, every & ~sure
 
 

@@ -8,32 +8,34 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.conduct.u_turns import u_turns
 from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
+from rulec.trace.partly_known.partly_known_values import Truth
 
 _SLOWED_MPS = 0.5
 """A vehicle that is slower by more afterwards may have had to brake."""
 
 
-def has_to_brake_for_turn(context: DriveContext, turns: Flags) -> tuple[Flags, Flags]:
-    """Masks of vehicles that must brake for ego while it turns round, and that perhaps must.
+def have_to_brake_for_turn(context: DriveContext) -> Truth:
+    """Which vehicles must brake for ego while it turns round; unknown where it may not.
 
     Ego is across their way, and they would have to brake harder than ``disturbing_mps2`` after
     their reaction time to avoid it. They do brake that hard, or are slower a while later. Vehicles
     that come up behind on the lanes of ego's own way see it slow down and do not count.
     """
-    shape = context.relevant.shape
-    sure, perhaps = np.zeros((2, *shape), dtype=bool)
-    states = turns.nonzero()[0]
+    brake, seem_to = np.zeros((2, *context.relevant.shape), dtype=bool)
+    turns = u_turns(context)
+    states = turns.possible.nonzero()[0]
     if not len(states):
-        return sure, perhaps
+        return Truth.known(brake)
     near = _too_near(context, states)
     near &= context.tracks.of_type("vehicle")[:, None] & ~context.going_along[:, states]
     rows, columns = near.nonzero()
     for row, state in zip(rows.tolist(), states[columns].tolist(), strict=True):
         brakes, slower = _brakes(context, row, state)
-        sure[row, state], perhaps[row, state] = brakes, slower and not brakes
-    return sure, perhaps
+        brake[row, state], seem_to[row, state] = brakes, slower
+    return Truth(brake & turns.sure, brake | seem_to)
 
 
 def _too_near(context: DriveContext, states: NDArray[intp]) -> Flags:
