@@ -13,7 +13,7 @@ from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording
 from support.generators.random_recordings import STEP_S, lanes, scenes
-from support.signal_arrays import bounds_of, said, unknown_in, values_of
+from support.signal_arrays import said, unknown_in, values_of
 
 PLACE_M = 0.05
 """Places of a recording made by hand are as good."""
@@ -29,7 +29,7 @@ def lane_polygons(found):
 
 def shadow(polygon, axis):
     """What a polygon covers of an axis."""
-    low, high = bounds_of(polygon, axis), polygon.bounds[axis + 2]
+    low, high = polygon.bounds[axis], polygon.bounds[axis + 2]
     return shapely.LineString([(low, 0), (high, 0)])
 
 
@@ -40,8 +40,8 @@ def seen_from(body, ego, lanes):
         station = "behind" if ego.centroid.x < body.centroid.x else "in_front_of"
     else:
         station = "beside"
-    length = bounds_of(body, 2) - bounds_of(body, 0)
-    width = bounds_of(body, 3) - bounds_of(body, 1)
+    length = body.bounds[2] - body.bounds[0]
+    width = body.bounds[3] - body.bounds[1]
     enough = min(USUAL.touching_m, width / 2) * length
     touched = [lane for lane in lanes if lane.intersection(body).area > enough]
     wide = shapely.union_all(touched) if touched else body
@@ -50,26 +50,22 @@ def seen_from(body, ego, lanes):
         wide = body
     if in_the_way(min(lanes, key=ego.centroid.distance), body, ego):
         return station, "same_lane"
-    if ego.centroid.y <= bounds_of(wide, 1):
+    if ego.centroid.y <= wide.bounds[1]:
         return station, "right_of"
-    return station, "left_of" if ego.centroid.y >= bounds_of(wide, 3) else "same_lane"
+    return station, "left_of" if ego.centroid.y >= wide.bounds[3] else "same_lane"
 
 
 def in_the_way(lane, body, ego):
     """Does a body overlap ego's across the road, and ego's lane at all?"""
-    overlap = min(bounds_of(body, 3), bounds_of(ego, 3)) - max(
-        bounds_of(body, 1), bounds_of(ego, 1)
-    )
-    inside = min(bounds_of(body, 3), bounds_of(lane, 3)) - max(
-        bounds_of(body, 1), bounds_of(lane, 1)
-    )
+    overlap = min(body.bounds[3], ego.bounds[3]) - max(body.bounds[1], ego.bounds[1])
+    inside = min(body.bounds[3], lane.bounds[3]) - max(body.bounds[1], lane.bounds[1])
     return overlap > USUAL.touching_m and inside > 0
 
 
 def covers(lane, body):
     """Does a body keep within a lane, but for so little that it is in no other?"""
-    low, high = bounds_of(lane, 1) - USUAL.touching_m, bounds_of(lane, 3) + USUAL.touching_m
-    return low <= bounds_of(body, 1) and bounds_of(body, 3) <= high
+    low, high = lane.bounds[1] - USUAL.touching_m, lane.bounds[3] + USUAL.touching_m
+    return low <= body.bounds[1] and body.bounds[3] <= high
 
 
 def bounds(value):

@@ -44,9 +44,7 @@ def told(word, road, *bodies, side="right", complete=(), route=("1", "2", "5")):
     if side == "left":
         found = mirrored_recording(found)
     signals = intention_signals(context_of(found, route, side))
-    column = values_of(signals, word) if word in signals.world else values_of(signals, word)
-    unknown = unknown_in(signals, word)
-    values = np.where(unknown, "?", column).tolist()
+    values = np.where(unknown_in(signals, word), "?", values_of(signals, word)).tolist()
     return values[0] if values and isinstance(values[0], list) else values
 
 

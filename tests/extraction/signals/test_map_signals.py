@@ -13,7 +13,7 @@ from rulec.extraction.signals.map.map_signals import (
 )
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
-from support.signal_arrays import all_said, possible_in, said, unknown_in, values_of
+from support.signal_arrays import all_said, letters, said, unknown_in, values_of
 
 
 def context(xs, *others, first=None, second=None):
@@ -150,7 +150,8 @@ def test_the_distance_to_the_next_crossing_is_from_front_to_its_edge():
     expected = [26, 0, 0, 6, NO_CROSSING_M]
     assert distance_to_crossing(found) == pytest.approx(expected, abs=0.05)
     signals = map_signals(found)
-    assert possible_in(signals, "crossing_zone").tolist() == [False, True, True, False, False]
+    # At this speed ego may be past a crossing of 4 m by the middle of the step
+    assert letters(signals, "crossing_zone") == "F???F"
     assert said(signals, "surface").tolist() == [
         "carriageway",
         *(["crossing"] * 2),

@@ -135,7 +135,7 @@ def test_what_is_settled_is_no_better_known(values, unknown, settled_unknown, ro
 @pytest.mark.parametrize(
     ("given", "expected"),
     [
-        # What may be otherwise for too short a time is not, and what is sure so briefly may be noise
+        # What may be otherwise for too short a time is not; what is sure so briefly may be noise
         ("TTT??TTT", "TTTTTTTT"),
         ("FFF??FFF", "FFFFFFFF"),
         ("TTT???TTT", "TTT???TTT"),

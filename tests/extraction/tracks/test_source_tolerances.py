@@ -203,10 +203,11 @@ def test_time_headway_and_speed_are_of_the_same_speed():
     ahead = {k: (10 * np.cos(0.3) * k, 10 * np.sin(0.3) * k - 8) for k in range(4)}
     ego = vehicle(7, {k: (x / 2, y / 2) for k, (x, y) in ahead.items()}, heading=0.3)
     context = context_of(of_source("x", ego, steady(8, 30, 0, 0)))
-    about = participant_signals(context).about
+    signals = participant_signals(context)
+    headway, gap = (values_of(signals, name)[0] for name in ("time_headway", "gap"))
     speed = values_of(ego_signals(context), "speed")
     assert speed == pytest.approx(np.full(4, 36.0), abs=0.01)
-    assert about["time_headway"][0] == pytest.approx(about["gap"][0] / 10, abs=0.01)
+    assert headway == pytest.approx(gap / 10, abs=0.01)
 
 
 @pytest.mark.parametrize(

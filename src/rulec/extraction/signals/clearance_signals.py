@@ -43,7 +43,7 @@ def _oncoming_clear(context: DriveContext) -> Truth:
     one_way = own_lanelets(context).flags(
         lambda at: context.surroundings.directions(at.id)[0] is True
     )
-    alone = own_lanes | one_way
+    alone: Flags = own_lanes | one_way
     own = np.maximum(context.ego_extents.along[0], 0.0)
     steps = context.steps_in(limits.overtaking_s)
     ends = context.spans.columns + steps >= context.spans.end
@@ -54,7 +54,7 @@ def _oncoming_clear(context: DriveContext) -> Truth:
     cells = present.part(against.nonzero()[0])
     unseen = ends & ~far_enough
     if not len(cells):
-        return alone | Truth(~unseen, np.ones_like(unseen))
+        return Truth(~unseen, np.ones_like(unseen)) | alone
     comes = (np.abs(cells.of(context.extents.turned)) > np.pi / 2) & cells.of(context.relevant)
     cells = cells.part(comes.nonzero()[0])
     columns, station = cells.columns, cells.of(relations.station(context))
@@ -67,8 +67,8 @@ def _oncoming_clear(context: DriveContext) -> Truth:
         (station == relations.BESIDE, left_s < limits.overtaking_s, left_s < limits.yielding_s),
     )
     meets |= context.spans.within(met, steps) | _meets_beyond_middle(context, met | soon)
-    clear = Truth.known(~meets)
-    return alone | Truth(clear.sure & ~unseen & ~_may_brake_for_ego(context, cells), clear.possible)
+    unsure = unseen | _may_brake_for_ego(context, cells)
+    return Truth(~meets & ~unsure, ~meets) | alone
 
 
 def _may_brake_for_ego(context: DriveContext, cells: Cells) -> Flags:
