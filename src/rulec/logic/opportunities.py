@@ -9,10 +9,9 @@ lists the forms.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from functools import reduce
+from collections.abc import Iterable
 
-from rulec.logic.bounds import BOOLEAN, operations_of
+from rulec.logic.connectives import TRUE, all_of, any_of, chain_of, negated
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import (
     Binary,
@@ -23,8 +22,6 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-
-_TRUE = Constant(True)
 
 _GUARDING = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
 
@@ -38,7 +35,7 @@ def breach_of(formula: Formula) -> Formula:
     A word violates the formula if and only if this holds in one of its states. A formula that is
     not of the form ``always`` or ``never`` is violated in the first state.
     """
-    return fold_constants(_breach(formula) or _at_first(_negated(formula)))
+    return fold_constants(_breach(formula) or _at_first(negated(formula)))
 
 
 def trigger_of(
@@ -57,15 +54,15 @@ def trigger_of(
     apart: list[Formula] = []
     initially: list[Formula] = []
     for exception, is_initial in exceptions:
-        (initially if is_initial else apart).append(_negated(exception))
+        (initially if is_initial else apart).append(negated(exception))
     if condition is not None:
         guards = isinstance(required, Unary) and required.operator in _GUARDING
         (apart if guards else initially).append(condition)
     if guards_one_state(required):
         parts += apart
     parts += map(_at_first_once, initially)
-    formula = fold_constants(_all(parts)) if parts else None
-    return None if formula == _TRUE else formula
+    formula = fold_constants(all_of(parts)) if parts else None
+    return None if formula == TRUE else formula
 
 
 def guards_one_state(formula: Formula) -> bool:
@@ -78,31 +75,21 @@ def guards_one_state(formula: Formula) -> bool:
     return False
 
 
-def conjuncts(formula: Formula) -> Iterator[Formula]:
-    """The parts of a conjunction from left to right, however they are nested."""
-    yield from _operands(formula, BinaryOperator.AND)
-
-
-def looks_elsewhere(formula: Formula) -> bool:
-    """Whether a formula refers to other states than the present one."""
-    return any(operation.operator not in BOOLEAN for operation in operations_of(formula))
-
-
 def _breach(formula: Formula) -> Formula | None:
     match formula:
         case Binary(BinaryOperator.AND, left, right):
-            return _any([_breach_at_all(left), _breach_at_all(right)])
+            return any_of([_breach_at_all(left), _breach_at_all(right)])
         case Binary(BinaryOperator.IMPLIES, left, right):
             later = _breach(right)
-            return None if later is None else _all([later, _at_first_once(left)])
+            return None if later is None else all_of([later, _at_first_once(left)])
         case Binary(BinaryOperator.OR, left, right):
             first, second = _breach(left), _breach(right)
             if (first is None) == (second is None):
                 return None
             later, other = (first, right) if second is None else (second, left)
-            return None if later is None else _all([later, _at_first_once(_negated(other))])
+            return None if later is None else all_of([later, _at_first_once(negated(other))])
         case Unary(UnaryOperator.ALWAYS, operand, bound):
-            return _within(_negated(operand), bound)
+            return _within(negated(operand), bound)
         case Unary(UnaryOperator.NEVER, operand, bound):
             return _within(_without_lead(operand), bound)
         case Unary(UnaryOperator.NOT, Unary(UnaryOperator.EVENTUALLY, operand, bound)):
@@ -111,12 +98,12 @@ def _breach(formula: Formula) -> Formula | None:
 
 
 def _breach_at_all(formula: Formula) -> Formula:
-    return _breach(formula) or _at_first(_negated(formula))
+    return _breach(formula) or _at_first(negated(formula))
 
 
 def _within(formula: Formula, bound: Bound | None) -> Formula:
     """The formula within the bound of the ``always`` or ``never`` around it."""
-    return formula if bound is None else _all([formula, _reached(bound)])
+    return formula if bound is None else all_of([formula, _reached(bound)])
 
 
 def _reached(bound: Bound) -> Formula:
@@ -127,8 +114,8 @@ def _without_lead(formula: Formula) -> Formula:
     """A sequence without leading phases of ``true``, which only require earlier states."""
     match formula:
         case Binary(BinaryOperator.THEN, Constant(True), rest, None):
-            later = Unary(UnaryOperator.PREVIOUSLY, _TRUE)
-            return _all([_without_lead(rest), later])
+            later = Unary(UnaryOperator.PREVIOUSLY, TRUE)
+            return all_of([_without_lead(rest), later])
     return formula
 
 
@@ -137,10 +124,10 @@ def _trigger(formula: Formula) -> Formula | None:
         case Binary(BinaryOperator.AND, left, right):
             return _either(_trigger(left), _trigger(right))
         case Binary(BinaryOperator.IMPLIES, left, right) if _breach(right) is not None:
-            return _all([_at_first_once(left), _trigger(right) or _TRUE])
+            return all_of([_at_first_once(left), _trigger(right) or TRUE])
         case Binary(BinaryOperator.OR, left, right) if _breach(formula) is not None:
             guarding, other = (left, right) if _breach(right) is None else (right, left)
-            return _all([_at_first_once(_negated(other)), _trigger(guarding) or _TRUE])
+            return all_of([_at_first_once(negated(other)), _trigger(guarding) or TRUE])
         case Unary(UnaryOperator.ALWAYS, operand, bound):
             return _bounded(_condition(operand), bound)
         case Unary(UnaryOperator.NEVER, operand, bound):
@@ -153,22 +140,22 @@ def _trigger(formula: Formula) -> Formula | None:
 def _bounded(trigger: Formula | None, bound: Bound | None) -> Formula | None:
     if bound is None:
         return trigger
-    return _all([trigger or _TRUE, _reached(bound)])
+    return all_of([trigger or TRUE, _reached(bound)])
 
 
 def _condition(formula: Formula) -> Formula | None:
     """The condition under which a formula that must always hold demands something."""
     match formula:
         case Binary(BinaryOperator.IMPLIES, left, right):
-            return _all([left, _condition(right) or _TRUE])
+            return all_of([left, _condition(right) or TRUE])
         case Binary(BinaryOperator.AND, left, right):
             return _either(_condition(left), _condition(right))
         case Binary(BinaryOperator.OR):
-            parts = list(_operands(formula, BinaryOperator.OR))
+            parts = list(chain_of(BinaryOperator.OR, formula))
             asking = [(part, _condition(part)) for part in parts]
             conditions = [condition for _, condition in asking if condition is not None]
-            others = [_negated(part) for part, condition in asking if condition is None]
-            return _all([*others, *conditions]) if conditions else None
+            others = [negated(part) for part, condition in asking if condition is None]
+            return all_of([*others, *conditions]) if conditions else None
         case Unary(UnaryOperator.NOT, operand):
             return _beginning(operand)
     return None
@@ -178,49 +165,25 @@ def _beginning(formula: Formula) -> Formula | None:
     """The trigger of a ``never``: a sequence's first phase, a conjunction without its last part."""
     match formula:
         case Binary(BinaryOperator.THEN, left, right):
-            return left if left != _TRUE else _beginning(right) or right
+            return left if left != TRUE else _beginning(right) or right
         case Binary(BinaryOperator.AND):
-            parts = [part for part in conjuncts(formula) if part != _TRUE]
+            parts = [part for part in chain_of(BinaryOperator.AND, formula) if part != TRUE]
             last = _beginning(parts[-1]) if parts else None
             before = [*parts[:-1], *([] if last is None else [last])]
-            return _all(before) if before else None
+            return all_of(before) if before else None
         case Binary(BinaryOperator.OR, left, right):
             return _either(_beginning(left), _beginning(right))
     return None
 
 
 def _either(left: Formula | None, right: Formula | None) -> Formula | None:
-    return None if left is None or right is None else _any([left, right])
+    return None if left is None or right is None else any_of([left, right])
 
 
 def _at_first(formula: Formula) -> Formula:
-    return _all([formula, BEGINNING])
+    return all_of([formula, BEGINNING])
 
 
 def _at_first_once(formula: Formula) -> Formula:
     """A formula that held in the first state."""
     return Unary(UnaryOperator.ONCE, _at_first(formula))
-
-
-def _negated(formula: Formula) -> Formula:
-    match formula:
-        case Unary(UnaryOperator.NOT, operand):
-            return operand
-    return Unary(UnaryOperator.NOT, formula)
-
-
-def _operands(formula: Formula, operator: BinaryOperator) -> Iterator[Formula]:
-    match formula:
-        case Binary(own, left, right) if own is operator:
-            yield from _operands(left, operator)
-            yield from _operands(right, operator)
-        case _:
-            yield formula
-
-
-def _all(formulas: Iterable[Formula]) -> Formula:
-    return reduce(lambda left, right: Binary(BinaryOperator.AND, left, right), formulas)
-
-
-def _any(formulas: Iterable[Formula]) -> Formula:
-    return reduce(lambda left, right: Binary(BinaryOperator.OR, left, right), formulas)

@@ -6,6 +6,7 @@ from typing import Literal
 
 from rulec.diagnostics.code import Code
 from rulec.logic import formula as ltl
+from rulec.logic.connectives import operands_of
 
 FORMULA_TOO_LARGE = Code(
     "R0323",
@@ -76,17 +77,7 @@ def exceeded_limit(formula: ltl.Formula) -> Limit | None:
             return "deep"
         if parts > MOST_PARTS:
             return "large"
-        rest += ((inner, depth + 1) for inner in _parts(part))
+        terms = part.terms if isinstance(part, ltl.Comparison) else ()
+        bodies = [term.body for _, term in terms if isinstance(term, ltl.Count)]
+        rest += ((inner, depth + 1) for inner in (*operands_of(part), *bodies))
     return None
-
-
-def _parts(formula: ltl.Formula) -> tuple[ltl.Formula, ...]:
-    match formula:
-        case ltl.Unary(_, operand):
-            return (operand,)
-        case ltl.Binary(_, left, right):
-            return left, right
-        case ltl.Comparison(terms):
-            return tuple(term.body for _, term in terms if isinstance(term, ltl.Count))
-        case _:
-            return ()

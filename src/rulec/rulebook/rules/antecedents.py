@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+from rulec.logic.connectives import parts_in
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
 from rulec.rulebook.rulebook_model import Rule
 
@@ -45,14 +46,7 @@ def antecedents(rule: Rule) -> Iterator[Antecedent]:
 
 def has_constant(formula: Formula) -> bool:
     """Whether some part has a fixed value, like an option."""
-    match formula:
-        case Constant():
-            return True
-        case Unary(_, operand):
-            return has_constant(operand)
-        case Binary(_, left, right):
-            return has_constant(left) or has_constant(right)
-    return False
+    return any(isinstance(part, Constant) for part in parts_in(formula))
 
 
 def _all(rule: Rule) -> Iterator[Antecedent]:

@@ -14,9 +14,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from rulec.logic.connectives import all_of, any_of, negated
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
 from rulec.logic.opportunities import trigger_of
-from rulec.rulebook.arithmetic.linear_arithmetic import all_of, any_of, negated
 from rulec.rulebook.rulebook_model import Exemption, ExemptionScope, Rule
 
 _THEN, _UNTIL = BinaryOperator.THEN, BinaryOperator.UNTIL
