@@ -7,7 +7,20 @@ from fnmatch import fnmatchcase
 
 from rulec.diagnostics import Diagnostic, did_you_mean, named
 from rulec.diagnostics.code import Code
-from rulec.rulebook.rulebook_model import Rulebook
+from rulec.rulebook.rulebook_model import Rule, Rulebook
+
+EXAMPLE_FAILED = Code(
+    "R0406",
+    title="an example has another outcome than it states",
+    why="An `accept` example is a trace that the rule must allow, a `reject` example one that it "
+    "must forbid. If the outcome differs, either the formula or the example does not express what "
+    "is meant. `rulec test` runs all examples.",
+    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
+    "  require always not r(v)\n  reject { b(v); l(v); f(v) }\n}\n",
+    good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
+    "  require always not r(v)\n  reject { b(v); r(v); f(v) }\n}\n",
+    kind="compiled",
+)
 
 NOTHING_TO_RUN = Code(
     "R0460",
@@ -19,6 +32,43 @@ NOTHING_TO_RUN = Code(
     good="rulec test esterle2019 --rule R1",
     kind="command",
 )
+
+RULE_NOT_EXERCISED = Code(
+    "R0408",
+    title="a rule is not exercised by its examples",
+    why="Examples show that a formula is right only if they can fail in both ways: with a trace "
+    "that the rule must allow, and one that it must forbid. If a rule accepts all its examples, "
+    "they would also pass if it required nothing. `rulec test` reports this; with `--coverage` it "
+    "also reports what else the examples do not show.",
+    bad="rulebook example\nsignal wet, slow default false\nhard rule r {\n"
+    "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n}\n",
+    good="rulebook example\nsignal wet, slow default false\nhard rule r {\n"
+    "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n"
+    "  reject { not wet; wet and not slow }\n}\n",
+    kind="examples",
+)
+
+
+def unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagnostic:
+    kept, broken = True in missing, False in missing
+    if not any_examples:
+        message = f"rule `{rule.name}` has no example"
+        notes: tuple[str, ...] = ()
+    else:
+        message = f"no example {'keeps' if kept else 'breaks'} rule `{rule.name}`"
+        less = "forbade everything" if kept else "required nothing"
+        notes = (f"all of its examples would also pass if it {less}",)
+    wanted = [word for word, is_wanted in (("accept", kept), ("reject", broken)) if is_wanted]
+    clauses = " and ".join(f"`{word} {{ … }}`" for word in wanted)
+    return RULE_NOT_EXERCISED.at(
+        rule.span,
+        message,
+        expected=f"expected {clauses}",
+        help=f"`rulec show` proposes {'both' if len(wanted) == 2 else 'one'}; "
+        "whether the law agrees, you know",
+        notes=notes,
+        severity="warning",
+    )
 
 
 def untested(book: Rulebook, name: str, patterns: Sequence[str]) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.book_tests.book_test_messages import unexercised
 from rulec.book_tests.example_runs import (
     ExampleOutcome,
     ExampleRun,
@@ -22,7 +23,6 @@ from rulec.book_tests.proposed_examples import (
     ways_of,
 )
 from rulec.diagnostics import Diagnostic
-from rulec.diagnostics.code import Code
 from rulec.logic.formula import Proposition, atoms_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.implied_values import with_derived_values
@@ -31,21 +31,6 @@ from rulec.rulebook.rulebook_model import Axiom, Rule
 from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.coverage_witness import truth_values
-
-RULE_NOT_EXERCISED = Code(
-    "R0408",
-    title="a rule is not exercised by its examples",
-    why="Examples show that a formula is right only if they can fail in both ways: with a trace "
-    "that the rule must allow, and one that it must forbid. If a rule accepts all its examples, "
-    "they would also pass if it required nothing. `rulec test` reports this; with `--coverage` it "
-    "also reports what else the examples do not show.",
-    bad="rulebook example\nsignal wet, slow default false\nhard rule r {\n"
-    "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n}\n",
-    good="rulebook example\nsignal wet, slow default false\nhard rule r {\n"
-    "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n"
-    "  reject { not wet; wet and not slow }\n}\n",
-    kind="examples",
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +164,7 @@ def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
         if len(shown) < 2 and all(outcome.passed for outcome in outcomes):
             missing = verdicts(compiled.machine, run.compiled.vocabulary) - shown
             if missing:
-                yield _unexercised(rule, missing, any_examples=bool(outcomes))
+                yield unexercised(rule, missing, any_examples=bool(outcomes))
 
 
 def verdicts(machine: MealyMonitor, vocabulary: Vocabulary) -> set[bool]:
@@ -190,25 +175,3 @@ def verdicts(machine: MealyMonitor, vocabulary: Vocabulary) -> set[bool]:
         for state in ways.paths
         for symbol in ways.letters
     }
-
-
-def _unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagnostic:
-    kept, broken = True in missing, False in missing
-    if not any_examples:
-        message = f"rule `{rule.name}` has no example"
-        notes: tuple[str, ...] = ()
-    else:
-        message = f"no example {'keeps' if kept else 'breaks'} rule `{rule.name}`"
-        less = "forbade everything" if kept else "required nothing"
-        notes = (f"all of its examples would also pass if it {less}",)
-    wanted = [word for word, is_wanted in (("accept", kept), ("reject", broken)) if is_wanted]
-    clauses = " and ".join(f"`{word} {{ … }}`" for word in wanted)
-    return RULE_NOT_EXERCISED.at(
-        rule.span,
-        message,
-        expected=f"expected {clauses}",
-        help=f"`rulec show` proposes {'both' if len(wanted) == 2 else 'one'}; "
-        "whether the law agrees, you know",
-        notes=notes,
-        severity="warning",
-    )

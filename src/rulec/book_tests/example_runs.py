@@ -8,8 +8,8 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.book_tests.book_test_messages import EXAMPLE_FAILED
 from rulec.diagnostics import Diagnostic, Label, RulecError
-from rulec.diagnostics.code import Code
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import has_seconds
 from rulec.monitoring.axiom_violations import ImpossibleStateError, check_counting_axioms
@@ -17,22 +17,9 @@ from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.uncertainty.known_words import KnownLetters, run
 from rulec.rulebook.files.edition_names import edition_names
 from rulec.rulebook.rulebook_model import Example, Rule, Rulebook
-from rulec.rulebook.rules.example_elaboration import CONTRADICTORY_STATE
+from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
 from rulec.trace import Trace
 from rulec.value_display import Rows, short_repr
-
-EXAMPLE_FAILED = Code(
-    "R0406",
-    title="an example has another outcome than it states",
-    why="An `accept` example is a trace that the rule must allow, a `reject` example one that it "
-    "must forbid. If the outcome differs, either the formula or the example does not express what "
-    "is meant. `rulec test` runs all examples.",
-    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
-    "  require always not r(v)\n  reject { b(v); l(v); f(v) }\n}\n",
-    good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
-    "  require always not r(v)\n  reject { b(v); r(v); f(v) }\n}\n",
-    kind="compiled",
-)
 
 
 @dataclass(frozen=True, slots=True)

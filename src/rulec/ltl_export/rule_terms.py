@@ -12,8 +12,6 @@ from rulec.automata.alphabet import knowledge, propositions_of, reads_of
 from rulec.automata.axiom_groups import axiom_groups
 from rulec.automata.compiler import RuleFormula
 from rulec.automata.tables import MOST_STEPS_AHEAD
-from rulec.diagnostics import RulecError
-from rulec.diagnostics.code import Code
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import total_bound
 from rulec.logic.fold import fold_constants
@@ -22,21 +20,10 @@ from rulec.logic.printing import formula_text
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.spoken_words import spoken_formula
 from rulec.logic.sentences.wording import atom_clause, comparison_clause
+from rulec.ltl_export.ltl_messages import too_long
 from rulec.ltl_export.ltl_terms import Term, Terms, conjunction, size_of
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.rulebook.rules.axiom_instances import axiom_instances
-
-TOO_LONG_IN_LTL = Code(
-    "R0754",
-    title="a rule is too long in LTL",
-    why="Other tools' formulas have no bounds, so each bound is written out state by state, and "
-    "nested bounds multiply. A rule may have bounds of 10,000 steps and 2,000,000 characters of "
-    "text. Its automaton is equivalent and small: use `rulec compile` without `--emit ltl`.",
-    bad="rulec compile un-r79 --emit ltl --step 0.0001 -o build\n",
-    good="rulec compile un-r79 --emit ltl --step 0.5 -o build\n",
-    kind="command",
-)
-
 
 MOST_SIGNS = 2_000_000
 """The greatest number of characters of a rule's text."""
@@ -90,7 +77,7 @@ def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, s
     """The terms of a rule. Raises RulecError R0754 if they would be too long."""
     rule, formula = lowered.rule, lowered.formula
     if total_bound(formula) > MOST_STEPS_AHEAD:
-        raise _too_long(rule, f"one of its bounds has more than {MOST_STEPS_AHEAD:,} steps")
+        raise too_long(rule, f"one of its bounds has more than {MOST_STEPS_AHEAD:,} steps")
     vocabulary = rulebook.vocabulary
     own = propositions_of(formula)
     groups = axiom_groups(
@@ -131,7 +118,7 @@ def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, s
     )
     sizes = map(size_of, (of_rule.formula, of_rule.facts, of_rule.history))
     if sum(sizes) > MOST_SIGNS:
-        raise _too_long(rule, f"its text would have more than {MOST_SIGNS:,} signs")
+        raise too_long(rule, f"its text would have more than {MOST_SIGNS:,} signs")
     return of_rule
 
 
@@ -151,12 +138,3 @@ def _in_words(proposition: ltl.Proposition, phrases: Mapping[str, str]) -> str:
         return comparison_clause(spoken, ENGLISH, holds=True)
     assert isinstance(spoken, ltl.Atom)
     return atom_clause(spoken, ENGLISH, holds=True)
-
-
-def _too_long(rule: Rule, why: str) -> RulecError:
-    """The error (R0754) about a rule."""
-    return TOO_LONG_IN_LTL.error(
-        rule.span,
-        f"rule `{rule.name}` is too long in LTL: {why}",
-        help="use a larger step, or its automaton, which is small: leave out `--emit ltl`",
-    )

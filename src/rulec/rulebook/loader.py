@@ -11,12 +11,8 @@ from pathlib import Path
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
 from rulec.rulebook.allowances import judged_allowances
 from rulec.rulebook.files import search_path as search
-from rulec.rulebook.files.referenced_files import (
-    Book,
-    ReferencedFiles,
-    source_file,
-    vocabulary_for_rulebook,
-)
+from rulec.rulebook.files.reference_messages import vocabulary_for_rulebook
+from rulec.rulebook.files.referenced_files import Book, ReferencedFiles, source_file
 from rulec.rulebook.overlay.rulebook_overlay import law_line
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
 from rulec.rulebook.rulebook_model import Loaded, Rulebook, SourceFile, Traffic, provision_note

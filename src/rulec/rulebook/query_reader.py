@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
-from rulec.rulebook.elaborate.time_reach import FIRST_STATE_ONLY
+from rulec.rulebook.elaborate.time_reach_messages import FIRST_STATE_ONLY
 from rulec.rulebook.loader import (
     Trees,
     find,

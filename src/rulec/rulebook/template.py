@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from datetime import date
 from pathlib import Path
 from textwrap import wrap
 
 from rulec.diagnostics import RulecError
-from rulec.diagnostics.code import Code
 from rulec.files.text_templates import filled
 from rulec.rulebook.loader import parse_rulebook, read_trees, resolve_trees
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.rulebook.rules.rule_topics import by_group
+from rulec.rulebook.template_messages import no_name
 from rulec.syntax import decode, parse, tree
-
-NO_NAME = Code(
-    "R0738",
-    title="a rulebook cannot have this name",
-    why="A rulebook's name is used in its first line and in rulebooks that extend it: it consists "
-    "of letters, digits, `_` and `-`, begins with a letter, and is not a word of the language.",
-    bad="rulec new 'Belgium 2'",
-    good="rulec new belgium_2",
-    kind="command",
-)
-
 
 _NEW = Path(__file__).with_name("new_rulebook.txt")
 _UPON = Path(__file__).with_name("new_rulebook_upon.txt")
@@ -65,9 +53,9 @@ def _refuse(name: str) -> None:
     try:
         source = decode(name, f"rulebook {name}\n{_ANY}".encode("utf-8", "replace"))
         if parse(source)[1]:
-            raise _no_name(name)
+            raise no_name(name)
     except RulecError:
-        raise _no_name(name) from None
+        raise no_name(name) from None
 
 
 _ANY = "signal p\nhard rule r { require p }\n"
@@ -121,15 +109,3 @@ def _changed(rules: Sequence[Rule]) -> Iterator[str]:
     yield f'# drop rule {first.name} because "…"'
     hard = next((rule.name for rule in rules if rule.strength == "hard"), "")
     yield from [f'# soften rule {hard} because "…"'] if hard else []
-
-
-def _no_name(name: str) -> RulecError:
-    """``name`` cannot be a rulebook's."""
-    plain = re.sub(r"\W+", "_", name).strip("_").lower()
-    offered = plain if plain[:1].isalpha() and plain != name.lower() else f"my_{plain or 'rules'}"
-    return NO_NAME.error(
-        None,
-        f"`{name}` cannot be the name of a rulebook",
-        expected="expected letters, digits, `_`, `-`, a letter first, and no word of the language",
-        help=f"such as `{offered[:60]}`",
-    )

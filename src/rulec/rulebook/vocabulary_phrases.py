@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from rulec.diagnostics import Source
 from rulec.resources import rulebooks_folder
-from rulec.rulebook.files.search_path import NAME_NOT_FOUND
+from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.rulebook_model import SourceFile
 from rulec.toml import parsed_toml
 

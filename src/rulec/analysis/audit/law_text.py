@@ -9,22 +9,10 @@ from pathlib import Path
 from typing import Final, TypeAlias
 
 from rulec.analysis.audit import citation_words as words
+from rulec.analysis.audit.audit_messages import NO_ARTICLES
 from rulec.analysis.audit.citations import PartKind, Reference, references_in
 from rulec.diagnostics import Source, SourceLocation
-from rulec.diagnostics.code import Code
 from rulec.files.read_files import MAX_LAW_BYTES, decoded, opened, read_whole
-
-NO_ARTICLES = Code(
-    "R0714",
-    title="a law's text has no articles",
-    why="Citations of rules are looked up in the text of their law, whose articles must begin on "
-    "their own lines: with Markdown headings such as `### § 5 Overtaking`, or lines such as "
-    "`Article 5`, each after an empty line.",
-    bad="echo 'Drive with care.' > act.md\nrulec audit de --law act.md",
-    good="printf '### § 5 Overtaking\\n\\n(1) Overtake on the left.\\n' > act.md\n"
-    "rulec show --audit de --law act.md",
-    kind="command",
-)
 
 
 @dataclass(frozen=True, slots=True)

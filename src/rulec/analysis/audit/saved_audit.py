@@ -7,22 +7,11 @@ from pathlib import Path
 
 import msgspec
 
+from rulec.analysis.audit.audit_messages import NOT_AN_AUDIT
 from rulec.analysis.audit.rulebook_audit import Audit
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.diagnostics.code import Code
 from rulec.diagnostics.phrases import json_words
 from rulec.files.read_files import MAX_LAW_BYTES, opened, read_whole
-
-NOT_AN_AUDIT = Code(
-    "R0705",
-    title="an older audit cannot be read",
-    why="An audit can be compared with another rulebook, or with a JSON file written by `rulec "
-    "audit`. This file is something else, or is incomplete.",
-    bad="echo '{}' > old.json\nrulec audit esterle2019 --compare old.json",
-    good="rulec show --audit esterle2019 --output-format json > old.json\n"
-    "rulec show --audit esterle2019 --compare old.json",
-    kind="command",
-)
 
 
 class _File(msgspec.Struct):

@@ -15,7 +15,7 @@ from rulec.logic.bounds import operations_of
 from rulec.logic.printing import number_in_words
 from rulec.resource_limits import COMPILING, BudgetSpentError
 from rulec.rulebook.rulebook_model import Rule, provision_note
-from rulec.rulebook.rules.axiom_contradictions import contradictory_facts
+from rulec.rulebook.rules.axiom_messages import contradictory_facts
 
 FAILED_CHECK = Code(
     "R0402",

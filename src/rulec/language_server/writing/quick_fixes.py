@@ -20,8 +20,11 @@ from rulec.language_server.workspace.editor_workspace import (
 )
 from rulec.language_server.workspace.published_diagnostics import diagnostics_of
 from rulec.language_server.workspace.text_positions import TextPositions
-from rulec.rulebook.files.referenced_files import EXTENDS_CIRCLE, WRONG_KIND_OF_FILE
-from rulec.rulebook.files.search_path import NAME_NOT_FOUND
+from rulec.rulebook.files.reference_messages import (
+    EXTENDS_CIRCLE,
+    NAME_NOT_FOUND,
+    WRONG_KIND_OF_FILE,
+)
 from rulec.syntax.messages.lookalikes import CONFUSABLE_NAME
 from rulec.syntax.messages.mismatch import UNEXPECTED_WORD, UNTERMINATED_TEXT
 from rulec.syntax.messages.structure import NOT_A_RULEBOOK, OUTSIDE_BRACES, UNBALANCED_BRACE

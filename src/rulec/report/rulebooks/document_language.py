@@ -14,7 +14,7 @@ from rulec.logic.sentences.french import FRENCH
 from rulec.logic.sentences.german import GERMAN
 from rulec.logic.sentences.language import Language, LanguageCode
 from rulec.logic.sentences.wording import spoken
-from rulec.rulebook.files.search_path import NAME_NOT_FOUND
+from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.rulebook.vocabulary_phrases import titles_in, topics_in, types_of
 from rulec.toml import parsed_toml

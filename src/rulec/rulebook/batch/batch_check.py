@@ -18,8 +18,7 @@ from rulec.files.file_messages import NOTHING_LEFT
 from rulec.files.left_alone import LeftAlone
 from rulec.files.source_detection import beginning_of, first_word_at
 from rulec.rulebook.files import search_path as search
-from rulec.rulebook.files.referenced_files import EXTENDS_CIRCLE
-from rulec.rulebook.files.search_path import NAME_NOT_FOUND
+from rulec.rulebook.files.reference_messages import EXTENDS_CIRCLE, NAME_NOT_FOUND
 from rulec.rulebook.files.source_walk import SUFFIX, FoundSources, sources_below
 from rulec.rulebook.reading.reading_cache import BookQuestion, recalled, remember_findings
 from rulec.settings import Exclusion

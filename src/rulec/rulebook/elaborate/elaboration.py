@@ -12,15 +12,11 @@ from rulec.logic.printing import formula_text, term_text
 from rulec.rulebook.arithmetic import linear_arithmetic as numbers
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases, TooManyCasesError
 from rulec.rulebook.arithmetic.size_limits import exceeded_limit
+from rulec.rulebook.elaborate import constant_messages
 from rulec.rulebook.elaborate import elaboration_messages as say
 from rulec.rulebook.elaborate.amounts import bound_of, literal
 from rulec.rulebook.elaborate.dimension_messages import bare_beside_share, two_dimensions
-from rulec.rulebook.elaborate.macro_expansion import (
-    expand_macro,
-    object_as_relation,
-    parameter_value,
-    takes_no_object,
-)
+from rulec.rulebook.elaborate.macro_expansion import expand_macro, parameter_value
 from rulec.rulebook.elaborate.rule_messages import unused_variable
 from rulec.rulebook.elaborate.scope import AnyArgument, BoundVariable, Scope
 from rulec.rulebook.names.declaration_messages import twice
@@ -121,11 +117,11 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
     elif name in scope.variables:
         if not node.arguments:
             return Object(scope.variables[name].actual)
-        scope.report(object_as_relation(node, scope))
+        scope.report(constant_messages.object_as_relation(node, scope))
         return None
     kind = scope.constants.overlay.kind_of(name)
     if kind and node.arguments and kind != "definition":
-        scope.report_wrong_arity(node, takes_no_object(node, kind, scope))
+        scope.report_wrong_arity(node, constant_messages.takes_no_object(node, kind, scope))
         return None
     if kind == "option":
         return ltl.Constant(scope.constants.overlay.options[name])

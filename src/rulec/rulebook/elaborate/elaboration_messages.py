@@ -9,12 +9,12 @@ from rulec.diagnostics.code import Code
 from rulec.diagnostics.ways_out import Help, offering, write
 from rulec.logic.formula import Formula
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
-from rulec.rulebook.arithmetic.size_limits import FORMULA_TOO_LARGE
+from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.elaborate.scope import SIDES, Scope
 from rulec.rulebook.names.atom_messages import NOT_BOOLEAN, NUMBER_OR_FORMULA
 from rulec.syntax import tree
 from rulec.syntax.messages.larger_edits import operator_outside
-from rulec.syntax.messages.literals import NUMBER_TOO_LARGE
+from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.tree_printer import print_formula
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.dimensions import TIME, Dimension

@@ -14,7 +14,8 @@ from rulec.diagnostics.ways_out import Help, meant, offering, write
 from rulec.logic.bounds import longest_divisor
 from rulec.logic.printing import time_in_words
 from rulec.resource_limits import CHOICES
-from rulec.rulebook.arithmetic.size_limits import DEEPEST, FORMULA_TOO_LARGE, MOST_PARTS, Limit
+from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, Limit
+from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.rulebook_model import Rule
 from rulec.syntax import tree
 from rulec.syntax.messages.larger_edits import declaration_left_out, member_left_out, with_scope

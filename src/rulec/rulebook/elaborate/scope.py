@@ -8,31 +8,16 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from rulec.diagnostics import Diagnostic, Label, Span
-from rulec.diagnostics.code import Code
-from rulec.diagnostics.ways_out import in_header, offering
 from rulec.logic.formula import Atom, QuantityTerm
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.arithmetic.size_limits import OverLimitError
 from rulec.rulebook.elaborate.rule_messages import over_limit, unused_variable
-from rulec.rulebook.names import atom_messages
+from rulec.rulebook.names import atom_messages, side_messages
 from rulec.rulebook.names.declaration_messages import twice
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.syntax import tree
 from rulec.vocabulary import Enumeration, Quantity, Signal
-
-UNKNOWN_SIDE = Code(
-    "R0211",
-    title="the near or the far side is undefined",
-    why="The near side is the side of the kerb: the right one where traffic drives on the right. "
-    "`near_side_of` and `far_side_of` need a `traffic` line in the rulebook or in one that it "
-    "extends, and a vocabulary with `left_of` and `right_of`.",
-    bad="rulebook example\nuse road\n"
-    "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n",
-    good="rulebook example\ntraffic right\nuse road\n"
-    "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n",
-)
-
 
 SIDES = {"near_side_of": {"right": "right_of", "left": "left_of"}}
 SIDES["far_side_of"] = {"right": "left_of", "left": "right_of"}
@@ -158,12 +143,12 @@ class Scope:
             return name
         traffic = self.constants.traffic
         if not traffic:
-            self.report(_no_traffic(use, name))
+            self.report(side_messages.no_traffic(use, name))
             return None
         side = SIDES[name][traffic]
         if self.behind(side) is None:
             if not self.symbols.may_know(side):
-                self.report(_no_sides(use, name, side))
+                self.report(side_messages.no_sides(use, name, side))
             return None
         return side
 
@@ -281,26 +266,3 @@ def bound_variables(
         else:
             variables[name.text] = BoundVariable(kind, parameter.span, name.text)
     return variables
-
-
-def _no_traffic(use: tree.AtomUse, name: str) -> Diagnostic:
-    """The mistake of ``near_side_of`` without a declared side of traffic."""
-    return UNKNOWN_SIDE.at(
-        use.name.span,
-        f"`{name}` depends on the side on which traffic drives, and the rulebook does not say it",
-        expected="left or right?",
-        help=offering(
-            "write `traffic right` or `traffic left` in the rulebook's header",
-            *(in_header(f"traffic {side}", use.span.source.name) for side in ("right", "left")),
-        ),
-    )
-
-
-def _no_sides(use: tree.AtomUse, name: str, side: str) -> Diagnostic:
-    """``near_side_of`` with a vocabulary that has no sides."""
-    return UNKNOWN_SIDE.at(
-        use.name.span,
-        f"`{name}` means `{side}` here, which the vocabulary does not have",
-        expected="expected a signal or a value",
-        help="`use` a vocabulary that has `left_of` and `right_of`, such as `road`",
-    )

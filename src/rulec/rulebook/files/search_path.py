@@ -11,26 +11,14 @@ from pathlib import Path
 from typing import Literal
 
 from rulec.diagnostics import Label, RulecError, Span, did_you_mean, named, nearest_name
-from rulec.diagnostics.code import Code
 from rulec.diagnostics.ways_out import offering
 from rulec.files.read_files import MAX_SOURCE_BYTES, opened, what_reads
 from rulec.files.source_detection import LEAD_BYTES, beginning_of, first_word_at
 from rulec.files.work_trees import refuse_no_source
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.open_documents import open_text
+from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.files.source_walk import SUFFIX, rules_files
-
-NAME_NOT_FOUND = Code(
-    "R0703",
-    title="a name was not found on the search path",
-    why="There is no rulebook or vocabulary of this name beside the file that refers to it or "
-    "among those that ship with rulec (`rulec list`). A rulebook in a folder of its own name, such "
-    "as `mine/mine.rules`, may also extend those beside that folder. To refer to a file, give its "
-    "path, such as `./mine.rules`.",
-    bad="rulebook example\nuse papr\nhard rule r { require never CONGESTED }\n",
-    good="rulebook example\nuse paper\nhard rule r { require never CONGESTED }\n",
-)
-
 
 _PACKED = ".json.gz"
 _DOCUMENTS = (".doc", ".docx", ".odt", ".pdf", ".rtf")

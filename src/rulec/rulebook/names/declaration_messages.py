@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Final
 
 from rulec.diagnostics import Diagnostic, Label, Span, any_of, named, nearest_name
@@ -91,6 +91,31 @@ PARAMETER_WITHOUT_TYPE = Code(
     "hard rule r (v: vehicle) { require never near(v) }\n",
 )
 
+NOTHING_TO_MARK = Code(
+    "R0216",
+    title="a constant or presumed name is not declared",
+    why="A `constant` or `presumed` line lists signals, quantities and enumerations, which must "
+    "be declared in the rulebook or in a vocabulary that it uses. It lists an enumeration, not "
+    "one of its values, and the bare name of a declaration about objects.",
+    bad="rulebook example\nkind is one of a_car, a_truck\nconstant kinds\n"
+    "hard rule r { require always a_car }\n",
+    good="rulebook example\nkind is one of a_car, a_truck\nconstant kind\n"
+    "hard rule r { require always a_car }\n",
+)
+
+NOT_TO_BE_PRESUMED = Code(
+    "R0325",
+    title="a name cannot be presumed",
+    why="A presumed name has its default where no source provides it, so it needs a default. "
+    "Every verdict that rests on it says so. A rulebook and its vocabularies may presume a dozen "
+    "names, since a verdict that rests on more says little about what was observed. Names that "
+    "are not presumed are unknown where nothing provides them.",
+    bad="rulebook example\nsignal waved_through\npresumed waved_through\n"
+    "hard rule r { require never waved_through }\n",
+    good="rulebook example\nsignal waved_through default false\npresumed waved_through\n"
+    "hard rule r { require never waved_through }\n",
+)
+
 
 _OTHER_DIMENSIONS: Final = {
     "velocity": "speed",
@@ -154,6 +179,66 @@ def twice(kind: str, again: tree.Name, first: Span) -> Diagnostic:
         ),
         labels=(Label(first.place, "first declared here"),),
     )
+
+
+def marked_twice(
+    item: tree.ConstantItem | tree.PresumedItem, again: tree.Name, first: Span
+) -> Diagnostic:
+    return DECLARED_TWICE.at(
+        again.span,
+        f"`{again.text}` is called {_mark(item)} twice",
+        expected="said again here",
+        help=offering("leave it out", *name_left_out(again.span)),
+        labels=(Label(first.place, "first said here"),),
+    )
+
+
+def nothing_to_mark(
+    item: tree.ConstantItem | tree.PresumedItem,
+    name: tree.Name,
+    known: Collection[str],
+    enumeration: str = "",
+) -> Diagnostic:
+    """Mistake: a name is not declared; it may be a value of an enumeration."""
+    signal = f"signal {name.text} default false"
+    if enumeration:
+        message = f"`{name.text}` is a value, and only what has values can be {_mark(item)}"
+        way_out: Help = offering(f"write `{enumeration}`, whose value it is", enumeration)
+    else:
+        message = f"nothing is called `{name.text}` that could be {_mark(item)}"
+        way_out = meant(name.text, list(known))
+    return NOTHING_TO_MARK.at(
+        name.span,
+        message,
+        expected="expected a signal, a quantity or an enumeration",
+        help=way_out or offering(f"declare it, such as `{signal}`", declared(signal, name.span)),
+    )
+
+
+def no_default(name: tree.Name, known: Span) -> Diagnostic:
+    return NOT_TO_BE_PRESUMED.at(
+        name.span,
+        f"`{name.text}` has no default that could be presumed",
+        expected="expected a name that has a default",
+        help=offering(
+            "give it a default where it is declared, or leave it out here",
+            *name_left_out(name.span),
+        ),
+        labels=(Label(known.place, "declared here"),),
+    )
+
+
+def too_many_presumed(name: tree.Name, number: int, most: int) -> Diagnostic:
+    return NOT_TO_BE_PRESUMED.at(
+        name.span,
+        f"`{name.text}` is the {number}th name that is presumed; there may be {most}",
+        expected="one more than can be presumed",
+        help="presume only what is rare and no source could tell; leave the others unknown",
+    )
+
+
+def _mark(item: tree.ConstantItem | tree.PresumedItem) -> str:
+    return "constant" if isinstance(item, tree.ConstantItem) else "presumed"
 
 
 def both_declare(names: Sequence[str], first: tree.UseLine, again: tree.UseLine) -> Diagnostic:

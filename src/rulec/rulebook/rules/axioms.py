@@ -23,7 +23,7 @@ from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.rulebook_model import Axiom, ExampleState, Rule, Variable
 from rulec.rulebook.rules.axiom_instances import bound_to
-from rulec.rulebook.rules.example_elaboration import CONTRADICTORY_STATE
+from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
 from rulec.rulebook.rules.implied_signals import with_what_follows
 from rulec.syntax import tree
 from rulec.vocabulary import Vocabulary

@@ -7,30 +7,19 @@ from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
 
-from rulec.diagnostics import Diagnostic, Label, Span
-from rulec.diagnostics.code import Code
+from rulec.diagnostics import Diagnostic
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, PAST, operations_of
 from rulec.logic.free_names import names_of, terms_of
+from rulec.rulebook.elaborate import meaning_messages as say
 from rulec.rulebook.elaborate.elaboration import number, truth
-from rulec.rulebook.elaborate.macro_expansion import CIRCULAR_DEFINITION, parameter_value
+from rulec.rulebook.elaborate.macro_expansion import parameter_value
 from rulec.rulebook.elaborate.scope import Scope, bound_variables
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.syntax import tree
 from rulec.vocabulary import Signal, Vocabulary
 from rulec.vocabulary.vocabulary_model import Meaning
-
-OTHERWISE_DECLARED = Code(
-    "R0328",
-    title="a definition does not fit the word that it defines",
-    why="A declared signal may be defined; where a source does not tell it, the definition does. "
-    "It is about the same objects as the signal, and looks at the present and the past.",
-    bad="rulebook example\nsignal rain, wet\ndefine wet = eventually rain\n"
-    "hard rule r { require never wet }\n",
-    good="rulebook example\nsignal rain, wet\ndefine wet = once rain\n"
-    "hard rule r { require never wet }\n",
-)
 
 
 def meanings_of(
@@ -50,7 +39,7 @@ def meanings_of(
         circle = _place(name, found, ordered, ())
         if circle:
             item = constants.overlay.meanings[name]
-            mistakes.append(_round_in_a_circle(item, circle))
+            mistakes.append(say.circle(item, circle))
             return MappingProxyType({}), mistakes
     return MappingProxyType(ordered), mistakes
 
@@ -77,7 +66,7 @@ def _meaning(
 ) -> Meaning | None:
     declared = symbols.items.get(item.name.text)
     if not isinstance(declared, Signal):
-        mistakes.append(_no_signal(item, symbols.spans.get(item.name.text)))
+        mistakes.append(say.no_signal(item, symbols.spans.get(item.name.text)))
         return None
     typed = tuple(
         parameter
@@ -90,7 +79,7 @@ def _meaning(
     if len(item.parameters) != len(declared.parameters) or (
         None not in kinds and kinds != declared.parameters
     ):
-        mistakes.append(_other_objects(item, declared, symbols.spans[declared.name]))
+        mistakes.append(say.other_objects(item, declared, symbols.spans[declared.name]))
         return None
     scope = Scope(
         symbols, constants, variables, mistakes, taken=frozenset(variables), owner="definition"
@@ -104,7 +93,7 @@ def _meaning(
     later = (x.operator for x in operations_of(formula) if x.operator not in BOOLEAN | PAST)
     ahead = next(later, None)
     if ahead is not None:
-        mistakes.append(_ahead_of_now(item, ahead.value))
+        mistakes.append(say.looks_ahead(item, ahead.value))
     return Meaning(tuple(variables), formula, names_of(formula))
 
 
@@ -179,43 +168,3 @@ def _typed(
             kinds = vocabulary.declarations[term.name].parameters
             pairs = zip(term.arguments, kinds, strict=True)
             yield from (pair for pair in pairs if pair[0] not in counted)
-
-
-def _no_signal(item: tree.DefineItem, declared: Span | None) -> Diagnostic:
-    return OTHERWISE_DECLARED.at(
-        item.name.span,
-        f"`{item.name.text}` is no signal",
-        expected="only a signal can be defined",
-        help="give the definition a name of its own",
-        labels=() if declared is None else (Label(declared.place, "declared here"),),
-    )
-
-
-def _other_objects(item: tree.DefineItem, declared: Signal, place: Span) -> Diagnostic:
-    objects = ", ".join(declared.parameters)
-    return OTHERWISE_DECLARED.at(
-        item.name.span,
-        f"`{item.name.text}` is about other objects than its definition",
-        expected=f"expected `({objects})`" if objects else "expected no objects",
-        help="define it for the objects that it is declared for",
-        labels=(Label(place.place, "declared here"),),
-    )
-
-
-def _ahead_of_now(item: tree.DefineItem, operator: str) -> Diagnostic:
-    return OTHERWISE_DECLARED.at(
-        item.body.span,
-        f"the definition of `{item.name.text}` looks ahead with `{operator}`",
-        expected="expected the present or the past",
-        help="use `once`, `historically`, `since` or `previously`",
-    )
-
-
-def _round_in_a_circle(item: tree.DefineItem, names: tuple[str, ...]) -> Diagnostic:
-    way = " → ".join(f"`{name}`" for name in names)
-    return CIRCULAR_DEFINITION.at(
-        item.name.span,
-        f"the definition of `{names[0]}` goes round in a circle: {way}",
-        expected="this word is among those that define it",
-        help="say one of them without the others",
-    )

@@ -9,7 +9,8 @@ from typing import Any, cast
 from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax import tree
 from rulec.syntax.keywords import SYMBOLS, token_kind
-from rulec.syntax.messages import literals
+from rulec.syntax.messages import literal_values
+from rulec.syntax.messages.literals import misleads, why_not_a_day
 from rulec.syntax.parse_nodes import ParseLeaf, ParseNode
 
 
@@ -47,27 +48,27 @@ class NodeValues:
                 _, escaped = next(characters)
                 if escaped not in '"\\':
                     place = Span(self.source, position, position + 2)
-                    self.mistakes.append(literals.unknown_escape(place, escaped))
+                    self.mistakes.append(literal_values.unknown_escape(place, escaped))
                 value.append(escaped)
-            elif literals.misleads(character):
+            elif misleads(character):
                 place = Span(self.source, position, position + 1)
-                self.mistakes.append(literals.control_character(place))
+                self.mistakes.append(literal_values.control_character(place))
             else:
                 value.append(character)
         return tree.Text("".join(value), span=self.span(leaf))
 
     def date(self, leaf: ParseLeaf) -> str:
         """The ISO text of an existing date."""
-        wrong = literals.why_not_a_day(leaf.text)
+        wrong = why_not_a_day(leaf.text)
         if wrong:
-            self.mistakes.append(literals.no_such_date(self.span(leaf), leaf.text, wrong))
+            self.mistakes.append(literal_values.no_such_date(self.span(leaf), leaf.text, wrong))
         return "" if wrong else leaf.text
 
     def number(self, leaf: ParseLeaf) -> float:
         """A finite number; 0 if it is too large."""
         number = float(leaf.text)
         if not math.isfinite(number):
-            self.mistakes.append(literals.number_too_large(self.span(leaf)))
+            self.mistakes.append(literal_values.number_too_large(self.span(leaf)))
             return 0.0
         return number
 
