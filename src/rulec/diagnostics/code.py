@@ -58,9 +58,10 @@ class Code:
     """A kind of mistake, with its explanation for ``rulec explain``.
 
     ``title``: one line. ``why``: its meaning and what to do, in a paragraph. ``bad``: a small
-    example that causes this code and no other. ``good``: the same example, corrected. The hundreds
-    digit of ``code`` is the stage: 1 syntax, 2 names, 3 types and meaning, 4 compiling, 5 traces, 6
-    scenarios and graphs, 7 files, 8 analysis.
+    example that causes this code and no other. ``good``: the same example, corrected; instead, the
+    one place that differs may be given as ``⟪bad|good⟫`` in ``bad``. The hundreds digit of ``code``
+    is the stage: 1 syntax, 2 names, 3 types and meaning, 4 compiling, 5 traces, 6 scenarios and
+    graphs, 7 files, 8 analysis.
     """
 
     __repr__ = short_repr
@@ -71,6 +72,14 @@ class Code:
     bad: str = ""
     good: str = ""
     kind: ExampleKind = "rules"
+
+    def __post_init__(self) -> None:
+        before, mark, marked = self.bad.partition("⟪")
+        if mark:
+            place, _, behind = marked.partition("⟫")
+            bad, _, good = place.partition("|")
+            object.__setattr__(self, "bad", f"{before}{bad}{behind}")
+            object.__setattr__(self, "good", f"{before}{good}{behind}")
 
     def at(
         self,

@@ -35,9 +35,7 @@ CIRCULAR_DEFINITION = Code(
     "R0316",
     title="a definition or a parameter refers to itself",
     why="A definition replaces its name, so it cannot contain itself, not even indirectly.",
-    bad="rulebook example\nsignal wet\ndefine slippery = wet or slippery\n"
-    "hard rule r { require never slippery }\n",
-    good="rulebook example\nsignal wet\ndefine slippery = wet\n"
+    bad="rulebook example\nsignal wet\ndefine slippery = wet⟪ or slippery|⟫\n"
     "hard rule r { require never slippery }\n",
 )
 
@@ -47,11 +45,8 @@ NO_SINGLE_VALUE = Code(
     why="Values can be dated by `in force from … until …`. The day is the requested one, else "
     "that of the rulebook's `law` line, else today. On that day there must be exactly one value.",
     bad='rulebook example\nlaw "Highway Code" as of 2019-01-01\nquantity gap in m default 9\n'
-    "param least : length = 1.5 m in force from 2020-04-28\n"
-    "hard rule r { require always gap >= least }\n",
-    good='rulebook example\nlaw "Highway Code" as of 2019-01-01\nquantity gap in m default 9\n'
-    "param least : length = 1 m in force until 2020-04-27\n"
-    "param least : length = 1.5 m in force from 2020-04-28\n"
+    "param least : length = 1⟪| m in force until 2020-04-27\n"
+    "param least : length = 1⟫.5 m in force from 2020-04-28\n"
     "hard rule r { require always gap >= least }\n",
 )
 

@@ -13,9 +13,7 @@ OTHERWISE_DECLARED = Code(
     title="a definition does not fit the word that it defines",
     why="A declared signal may be defined; where a source does not tell it, the definition does. "
     "It is about the same objects as the signal, and looks at the present and the past.",
-    bad="rulebook example\nsignal rain, wet\ndefine wet = eventually rain\n"
-    "hard rule r { require never wet }\n",
-    good="rulebook example\nsignal rain, wet\ndefine wet = once rain\n"
+    bad="rulebook example\nsignal rain, wet\ndefine wet = ⟪eventually|once⟫ rain\n"
     "hard rule r { require never wet }\n",
 )
 

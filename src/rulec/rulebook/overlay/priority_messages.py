@@ -11,9 +11,7 @@ PRIORITY_CIRCLE = Code(
     "R0321",
     title="levels of priority form a circle",
     why="With `a > b`, level a is above level b. Equal levels are written `a = b`.",
-    bad="rulebook example\npriority safety > legal\npriority legal > safety\nsignal wet\n"
-    "hard rule r in legal { require never wet }\n",
-    good="rulebook example\npriority safety > legal\nsignal wet\n"
+    bad="rulebook example\npriority safety > legal\n⟪priority legal > safety\n|⟫signal wet\n"
     "hard rule r in legal { require never wet }\n",
 )
 

@@ -16,10 +16,8 @@ UNKNOWN_TOPIC = Code(
     title="a topic is declared nowhere",
     why="Rules name their topics, from which tables of coverage are made. Topics are declared in "
     'the rulebook or in one that it extends, by `topics { NAME "title" }`.',
-    bad='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
-    "hard rule r {\n  topic zebras\n  require always p\n}\n",
-    good='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
-    "hard rule r {\n  topic zebra\n  require always p\n}\n",
+    bad='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\nhard rule r {\n'
+    "  topic ⟪zebras|zebra⟫\n  require always p\n}\n",
 )
 
 

@@ -35,10 +35,7 @@ IMPOSSIBLE_TRIGGER = Code(
     "considers sequences of states (R0805).",
     bad="rulebook example\nsignal parked, standing, lit default false\n"
     "fact parked implies standing\n"
-    "hard rule r { require always (parked and not standing implies lit) }\n",
-    good="rulebook example\nsignal parked, standing, lit default false\n"
-    "fact parked implies standing\n"
-    "hard rule r { require always (parked and standing implies lit) }\n",
+    "hard rule r { require always (parked and ⟪not |⟫standing implies lit) }\n",
 )
 
 

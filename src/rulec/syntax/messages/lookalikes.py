@@ -28,9 +28,8 @@ HIDDEN_IN_COMMENT = Code(
     why="A character that controls a terminal, or reverses the direction of the text, can make a "
     "comment look like a rule or a rule like a comment (CVE-2021-42574). Comments may contain "
     "only visible characters, spaces and tabs.",
-    bad=r"printf 'rulebook a signal p # \342\200\256\n"
-    r"hard rule r { require always p }' | rulec check -",
-    good="printf 'rulebook a signal p # left\\nhard rule r { require always p }' | rulec check -",
+    bad="printf 'rulebook a signal p # ⟪\\342\\200\\256|left⟫\\nhard rule r { require always "
+    "p }' | rulec check -",
     kind="command",
 )
 
