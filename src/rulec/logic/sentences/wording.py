@@ -22,7 +22,7 @@ from rulec.logic.formula import (
 from rulec.logic.one_point import is_none, is_some
 from rulec.logic.printing import term_text
 from rulec.logic.sentences.english import ENGLISH
-from rulec.logic.sentences.language import Language, SpanWords
+from rulec.logic.sentences.language import Language, SpanWords, alternative
 from rulec.logic.sentences.spoken_words import SpokenAtom, SpokenQuantity
 
 _FROM_ZERO = re.compile(r"(?<![\w.,])0 (\S+) - (\d[\d.,]*) \1(?!\S)")
@@ -207,11 +207,10 @@ def adverb(
     """
     words = language.adverbs[operator]
     if bound is None:
-        return words.inside if inside else words.outside
+        return alternative(words, 2 if inside else 1)
     later = language.later if inside else language.after_start
-    return words.bounded.format(
-        span(bound, language.before if operator in _PAST else later, language)
-    )
+    beyond = language.before if operator in _PAST else later
+    return alternative(words, 0).format(span(bound, beyond, language))
 
 
 def pattern_of(
@@ -221,12 +220,11 @@ def pattern_of(
     words = language.binary[operator]
     places = {"left": "{}", "right": "{}"}
     if bound is None:
-        return words.plain.format(**places)
+        return alternative(words, 0).format(**places)
     beyond = language.later if inside else language.after_start
     if operator is BinaryOperator.SINCE:
         beyond = language.before
     here = span(bound, beyond, language)
-    if bound.high is None:
-        return words.endless.format(span=here, **places)
-    first = span(replace(bound, low=bound.high * 0), beyond, language)
-    return words.bounded.format(span=here, first=first, **places)
+    first = "" if bound.high is None else span(replace(bound, low=Fraction(0)), beyond, language)
+    endless = bound.high is None
+    return alternative(words, 1 + endless).format(span=here, first=first, **places)
