@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict
 
@@ -53,14 +54,17 @@ class Details(TypedDict, total=False):
     fix: Fix | None
 
 
+_MARKED = re.compile("⟪(.*?)\\|(.*?)⟫", re.DOTALL)
+
+
 @dataclass(frozen=True, slots=True)
 class Code:
     """A kind of mistake, with its explanation for ``rulec explain``.
 
     ``title``: one line. ``why``: its meaning and what to do, in a paragraph. ``bad``: a small
-    example that causes this code and no other. ``good``: the same example, corrected; instead, the
-    one place that differs may be given as ``⟪bad|good⟫`` in ``bad``. The hundreds digit of ``code``
-    is the stage: 1 syntax, 2 names, 3 types and meaning, 4 compiling, 5 traces, 6 scenarios and
+    example that causes this code and no other. ``good``: the same example, corrected; instead,
+    places that differ may be given as ``⟪bad|good⟫`` in ``bad``. The hundreds digit of ``code`` is
+    the stage: 1 syntax, 2 names, 3 types and meaning, 4 compiling, 5 traces, 6 scenarios and
     graphs, 7 files, 8 analysis.
     """
 
@@ -74,12 +78,10 @@ class Code:
     kind: ExampleKind = "rules"
 
     def __post_init__(self) -> None:
-        before, mark, marked = self.bad.partition("⟪")
-        if mark:
-            place, _, behind = marked.partition("⟫")
-            bad, _, good = place.partition("|")
-            object.__setattr__(self, "bad", f"{before}{bad}{behind}")
-            object.__setattr__(self, "good", f"{before}{good}{behind}")
+        if "⟪" in self.bad:
+            bad, good = (_MARKED.sub(rf"\{side}", self.bad) for side in (1, 2))
+            object.__setattr__(self, "bad", bad)
+            object.__setattr__(self, "good", good)
 
     def at(
         self,

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from rulec.diagnostics import Span
 from rulec.logic import formula as ltl
-from rulec.logic.connectives import parts_in
+from rulec.logic.formula import parts_in
 
 PAST: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
     (

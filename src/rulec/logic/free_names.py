@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from rulec.logic import formula as ltl
-from rulec.logic.connectives import operands_of
+from rulec.logic.formula import operands_of
 from rulec.logic.linear_comparison import comparison
 from rulec.logic.printing import term_text
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import reduce
 
 from rulec.logic import formula as ltl
-from rulec.logic.connectives import chain_of, with_parts, with_terms
+from rulec.logic.formula import chain_of, with_parts, with_terms
 from rulec.logic.free_names import rename_variables
 
 _CHAINS = (ltl.BinaryOperator.AND, ltl.BinaryOperator.OR)

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from rulec.logic.connectives import TRUE, all_of, any_of, chain_of, negated
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import (
+    TRUE,
     Binary,
     BinaryOperator,
     Bound,
@@ -21,6 +21,10 @@ from rulec.logic.formula import (
     Formula,
     Unary,
     UnaryOperator,
+    all_of,
+    any_of,
+    chain_of,
+    negated,
 )
 
 _GUARDING = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)

@@ -12,8 +12,8 @@ from collections.abc import Iterator
 
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, PAST, bound_of, operations_of
-from rulec.logic.connectives import FALSE, TRUE, negated
 from rulec.logic.fold import fold_constants
+from rulec.logic.formula import FALSE, TRUE, negated
 from rulec.logic.semantics import Semantics
 
 _NOT, _AND, _OR = ltl.UnaryOperator.NOT, ltl.BinaryOperator.AND, ltl.BinaryOperator.OR

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from rulec.logic import formula as ltl
-from rulec.logic.connectives import with_terms
+from rulec.logic.formula import with_terms
 from rulec.logic.free_names import reads_in, rename_variables
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.rulebook.rules.axiom_instances import bound_to

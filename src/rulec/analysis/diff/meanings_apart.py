@@ -12,7 +12,7 @@ from math import inf
 from typing import TypeAlias
 
 from rulec.logic import formula as ltl
-from rulec.logic.connectives import operands_of, with_parts
+from rulec.logic.formula import operands_of, with_parts
 from rulec.logic.free_names import names_of, rename_variables
 from rulec.rulebook.rulebook_model import Axiom, Rulebook, Variable
 from rulec.vocabulary import Signal

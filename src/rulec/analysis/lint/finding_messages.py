@@ -56,8 +56,7 @@ NEVER_TRIGGERED = Code(
     why="The left side of an `implies` that always holds, the first phase of a forbidden "
     "sequence, a condition (`when`) or an exception (`unless`) that can never hold has no effect.",
     bad="rulebook example\nquantity speed in km/h\nsignal wet\nhard rule r {\n"
-    "  require always (speed ⟪< 30 km/h and speed >|> 30 km/h and speed <⟫ 50 km/h "
-    "implies wet)\n}\n",
+    "  require always (speed ⟪<|>⟫ 30 km/h and speed ⟪>|<⟫ 50 km/h implies wet)\n}\n",
     kind="analyzed",
 )
 

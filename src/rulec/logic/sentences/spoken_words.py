@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from rulec.logic import formula as ltl
-from rulec.logic.connectives import with_terms
+from rulec.logic.formula import with_terms
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.language import Language
 

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from rulec.array_types import Indices
 from rulec.diagnostics import SourceLocation
 from rulec.logic.bounds import looks_elsewhere
-from rulec.logic.connectives import chain_of
-from rulec.logic.formula import BinaryOperator, Formula
+from rulec.logic.formula import BinaryOperator, Formula, chain_of
 from rulec.logic.free_names import variables_of
 from rulec.logic.semantics import Semantics, steps_to_settle
 from rulec.monitoring.batch.columns.column_numbers import ComparisonSides

@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import islice, product
 
 from rulec.logic import formula as ltl
-from rulec.logic.connectives import all_of, any_of, negated
+from rulec.logic.formula import all_of, any_of, negated
 from rulec.logic.free_names import number_sum, renamed_number, terms_of, variables_of
 from rulec.logic.linear_comparison import comparison
 from rulec.logic.printing import sum_text

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from rulec.logic import formula as ltl
-from rulec.logic.connectives import operands_of
+from rulec.logic.formula import operands_of
 
 MOST_PARTS = 20_000
 """The most operators, atoms and comparisons of a rule's formula, including those within counts."""

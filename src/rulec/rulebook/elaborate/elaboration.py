@@ -7,7 +7,7 @@ from fractions import Fraction
 from functools import partial
 
 from rulec.logic import formula as ltl
-from rulec.logic.connectives import negated
+from rulec.logic.formula import negated
 from rulec.logic.printing import formula_text, term_text
 from rulec.rulebook.arithmetic import linear_arithmetic as numbers
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases, TooManyCasesError

@@ -36,7 +36,7 @@ OPERATOR_BEFORE_THEN = Code(
     title="an operator applies to a phase before `then`, not to the sequence",
     why="Operators such as `never` bind tightest, so `never a then b` means `(never a) then b`: a "
     "phase without `a`, then `b`. Put a whole sequence in parentheses.",
-    bad="rulebook example\nsignal a, b\nhard rule r { require never ⟪a then b|(a then b)⟫ }\n",
+    bad="rulebook example\nsignal a, b\nhard rule r { require never ⟪|(⟫a then b⟪|)⟫ }\n",
 )
 
 DIVIDED_BY_ZERO = Code(
@@ -55,7 +55,7 @@ MISPLACED_TEMPORAL_OPERATOR = Code(
     "parameter is a number at one moment. To follow one object over time, use a variable of the "
     "rule.",
     bad="rulebook example\ntype car\nsignal near(c: car) default false\n"
-    "hard rule r { require ⟪every c: car (always |always every c: car (⟫not near(c)) }\n",
+    "hard rule r { require ⟪|always ⟫every c: car (⟪always |⟫not near(c)) }\n",
 )
 
 

@@ -57,8 +57,7 @@ WRONG_ARGUMENT_TYPE = Code(
     title="an argument is of the wrong type",
     why="A declaration for one type applies to its subtypes, but not to other objects.",
     bad="rulebook example\ntype car\ntype pedestrian\nsignal braking(c: car)\n"
-    "hard rule r (⟪p: pedestrian) { require never braking(p|c: car) { require never "
-    "braking(c⟫) }\n",
+    "hard rule r (⟪p: pedestrian|c: car⟫) { require never braking(⟪p|c⟫) }\n",
 )
 
 NOT_BOOLEAN = Code(
@@ -76,8 +75,7 @@ AMBIGUOUS_NAME = Code(
     why="The name `b_v` is short for `b(v)`. If the underscores of a name can be read in two "
     "ways, use parentheses.",
     bad="rulebook example\ntype t\nsignal a(o: t), a_b(o: t)\n"
-    "hard rule r (b_c: t, c: t) { require ⟪a_b_c and a(c) and a(b_c|always (a_b(c) "
-    "and a(c) and a(b_c)⟫) }\n",
+    "hard rule r (b_c: t, c: t) { require ⟪a_b_c|always (a_b(c)⟫ and a(c) and a(b_c)⟪|)⟫ }\n",
 )
 
 

@@ -39,10 +39,8 @@ UNKNOWN_UNIT = Code(
     why="Numbers have units. The units of quantities, parameters and comparisons must be known so "
     "that they can be converted exactly. Units are case-sensitive. A plain number, such as how "
     "many passengers there are, is declared `in m/m`.",
-    bad="rulebook example\nquantity speed in KMH default 0\n"
-    "hard rule r { require always speed <= 50 KMH }\n",
-    good="rulebook example\nquantity speed in km/h default 0\n"
-    "hard rule r { require always speed <= 50 km/h }\n",
+    bad="rulebook example\nquantity speed in ⟪KMH|km/h⟫ default 0\n"
+    "hard rule r { require always speed <= 50 ⟪KMH|km/h⟫ }\n",
 )
 
 UNKNOWN_DIMENSION = Code(
@@ -58,8 +56,8 @@ TYPE_CIRCLE = Code(
     "R0304",
     title="types are subtypes of each other in a circle",
     why="A type can be a subtype of another, that of a third, and so on, but never of itself.",
-    bad="rulebook example\ntype ⟪bus is vehicle\ntype vehicle is bus|vehicle\n"
-    "type bus is vehicle⟫\nsignal p\nhard rule r { require always p }\n",
+    bad="rulebook example⟪|\ntype vehicle⟫\ntype bus is vehicle⟪\ntype vehicle is bus|⟫\n"
+    "signal p\nhard rule r { require always p }\n",
 )
 
 UNFITTING_DEFAULT = Code(

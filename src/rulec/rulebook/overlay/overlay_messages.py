@@ -98,8 +98,7 @@ NEVER_IN_FORCE = Code(
     why="What is `in force from` one day `until` another applies on both days and in between. If "
     "the second day comes first, there is no such day.",
     bad="rulebook example\nsignal wet\nhard rule r {\n"
-    "  in force from ⟪2024-07-01 until 2020|2020-07-01 until 2024⟫-06-30\n  require never wet\n"
-    "}\n",
+    "  in force from ⟪2024|2020⟫-07-01 until ⟪2020|2024⟫-06-30\n  require never wet\n}\n",
 )
 
 

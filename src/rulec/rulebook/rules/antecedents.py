@@ -10,8 +10,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from rulec.logic.connectives import parts_in
-from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
+from rulec.logic.formula import (
+    Binary,
+    BinaryOperator,
+    Constant,
+    Formula,
+    Unary,
+    UnaryOperator,
+    parts_in,
+)
 from rulec.rulebook.rulebook_model import Rule
 
 AntecedentKind = Literal["implies", "phase", "when", "unless"]

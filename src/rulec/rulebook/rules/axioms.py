@@ -10,7 +10,7 @@ from functools import lru_cache
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
 from rulec.logic import formula as ltl
-from rulec.logic.connectives import parts_in
+from rulec.logic.formula import parts_in
 from rulec.logic.free_names import names_in, rename_variables, required_inputs
 from rulec.logic.kleene import Unknown, holds
 from rulec.logic.printing import formula_text

@@ -14,8 +14,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from rulec.logic.connectives import all_of, any_of, negated
-from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
+from rulec.logic.formula import (
+    Binary,
+    BinaryOperator,
+    Bound,
+    Formula,
+    Unary,
+    UnaryOperator,
+    all_of,
+    any_of,
+    negated,
+)
 from rulec.logic.opportunities import trigger_of
 from rulec.rulebook.rulebook_model import Exemption, ExemptionScope, Rule
 

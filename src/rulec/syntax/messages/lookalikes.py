@@ -40,9 +40,8 @@ CONFUSABLE_NAME = Code(
     "several scripts or uses a script that no other word of the file uses (Unicode Technical "
     "Standard 39). A rule about the wrong one of two such names would never be violated. Rename "
     "one of them.",
-    bad="rulebook example\nsignal stop, \u0455top\n"
-    "hard rule r { require never (stop and \u0455top) }\n",
-    good="rulebook example\nsignal stop, halt\nhard rule r { require never (stop and halt) }\n",
+    bad="rulebook example\nsignal stop, ⟪\u0455top|halt⟫\n"
+    "hard rule r { require never (stop and ⟪\u0455top|halt⟫) }\n",
 )
 
 

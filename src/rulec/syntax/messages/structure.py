@@ -176,8 +176,7 @@ OUTSIDE_BRACES = Code(
     title="something is outside the braces that it belongs in",
     why="A clause such as `cite` or `accept` belongs inside the braces of a rule. Nothing can "
     "follow the closing `}` of a vocabulary.",
-    bad="rulebook example\nsignal p\nhard rule r { require always p }\naccept { p }\n",
-    good="rulebook example\nsignal p\nhard rule r { require always p accept { p } }\n",
+    bad="rulebook example\nsignal p\nhard rule r { require always p ⟪}\n|⟫accept { p }⟪| }⟫\n",
 )
 
 
