@@ -7,7 +7,8 @@ resolved.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
 from typing import Literal
 
 from rulec.diagnostics import Source, Span
@@ -549,3 +550,13 @@ class File(_SyntaxNode):
     semantics: SemanticsLine | None = None
     step: StepLine | None = None
     priorities: tuple[PriorityLine, ...] = ()
+
+
+def nodes_in(node: _SyntaxNode) -> Iterator[_SyntaxNode]:
+    """A node and all nodes in it."""
+    yield node
+    for own in fields(node):
+        value = getattr(node, own.name)
+        for part in value if isinstance(value, tuple) else (value,):
+            if isinstance(part, _SyntaxNode):
+                yield from nodes_in(part)

@@ -9,7 +9,7 @@ from lsprotocol import types as lsp
 from rulec.language_server.names.hover_texts import value_text
 from rulec.language_server.names.name_occurrences import DocumentNames
 from rulec.language_server.workspace.text_positions import TextPositions
-from rulec.rulebook.names.referenced_names import atoms_in, formulas_of, parts_of
+from rulec.rulebook.names.referenced_names import formulas_of, parts_of
 from rulec.syntax import tree
 from rulec.syntax.keywords import BINDS_NARROWLY, JOINS_ALIKE
 from rulec.vocabulary import Quantity
@@ -67,8 +67,8 @@ def _in_formula(formula: tree.Formula, names: DocumentNames) -> Iterator[Hint]:
         yield from _narrow(formula.left, formula.operator, names, unless=formula.right)
     if isinstance(formula, tree.Compare | tree.Arithmetic):
         yield from _units(formula, names)
-    for use in atoms_in(formula) if not parts_of(formula) else ():
-        yield from _value(use, names)
+    if isinstance(formula, tree.AtomUse):
+        yield from _value(formula, names)
     for part in parts_of(formula):
         yield from _in_formula(part, names)
 

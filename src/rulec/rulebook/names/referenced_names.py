@@ -23,18 +23,6 @@ def free_names(item: tree.Item) -> frozenset[str]:
     return frozenset(name for formula in formulas_of(item) for name in _free(formula, own))
 
 
-def _free(formula: tree.Formula, own: frozenset[str]) -> Iterator[str]:
-    if isinstance(formula, tree.AtomUse):
-        names = (formula.name.text, *(argument.text for argument in formula.arguments))
-        yield from (name for name in names if name not in own)
-    if isinstance(formula, tree.Prefix | tree.Infix) and formula.bound is not None:
-        yield from _names_in_bound(formula.bound)
-    if isinstance(formula, tree.Aggregate):
-        own |= {formula.variable.name.text}
-    for part in parts_of(formula):
-        yield from _free(part, own)
-
-
 def formulas_of(item: tree.Item) -> Iterator[tree.Formula]:
     """An item's formulas as written, without its examples."""
     match item:
@@ -56,11 +44,31 @@ def names_in_examples(rule: tree.RuleItem) -> Iterator[str]:
 
 
 def atoms_in(formula: tree.Formula) -> Iterator[tree.AtomUse]:
-    """Every use of a name in a formula, except those in bounds."""
+    """Every use of a name in a formula, those in bounds included."""
     if isinstance(formula, tree.AtomUse):
         yield formula
-    for part in parts_of(formula):
+    for part in (*parts_of(formula), *_ends_of_bound(formula)):
         yield from atoms_in(part)
+
+
+def names_in(formula: tree.Formula) -> Iterator[str]:
+    """Every name in a formula, those in bounds included, with repetitions."""
+    for use in atoms_in(formula):
+        yield from (use.name.text, *(argument.text for argument in use.arguments))
+
+
+def _free(formula: tree.Formula, own: frozenset[str]) -> Iterator[str]:
+    if isinstance(formula, tree.AtomUse):
+        yield from (name for name in names_in(formula) if name not in own)
+    elif isinstance(formula, tree.Aggregate):
+        own |= {formula.variable.name.text}
+    for part in (*parts_of(formula), *_ends_of_bound(formula)):
+        yield from _free(part, own)
+
+
+def _ends_of_bound(formula: tree.Formula) -> Iterator[tree.Amount]:
+    if isinstance(formula, tree.Prefix | tree.Infix) and formula.bound is not None:
+        yield from filter(None, (formula.bound.low, formula.bound.high))
 
 
 def parts_of(formula: tree.Formula) -> tuple[tree.Formula, ...]:
@@ -78,27 +86,3 @@ def parts_of(formula: tree.Formula) -> tuple[tree.Formula, ...]:
             return value, condition, otherwise
         case tree.AtomUse() | tree.TruthLiteral() | tree.NumberLiteral():
             return ()
-
-
-def names_in(formula: tree.Formula) -> Iterator[str]:
-    """Every name in a formula, those in bounds included, with repetitions."""
-    for use in atoms_in(formula):
-        yield use.name.text
-        yield from (argument.text for argument in use.arguments)
-    for bound in _bounds(formula):
-        yield from _names_in_bound(bound)
-
-
-def _names_in_bound(bound: tree.BoundNode) -> Iterator[str]:
-    for side in (bound.low, bound.high):
-        if isinstance(side, tree.AtomUse):
-            yield side.name.text
-
-
-def _bounds(formula: tree.Formula) -> Iterator[tree.BoundNode]:
-    # In anything else there is no temporal operator.
-    if isinstance(formula, tree.Prefix | tree.Infix):
-        if formula.bound is not None:
-            yield formula.bound
-        for part in parts_of(formula):
-            yield from _bounds(part)
