@@ -330,14 +330,14 @@ RuleInDocument = tuple[DocumentNames, Rulebook, Rule]
 def _rule_asked_about(server: EditorSession, uri: str, name: str) -> RuleInDocument:
     """A document, its rulebook and a rule in it. Raises _NoAnswerError if there are none."""
     known = server.names(uri)
-    resolved = None if known is None else known[0].checked.resolved
-    if known is None or resolved is None or resolved.rulebook is None:
+    book = None if known is None else known[0].checked.resolved.rulebook
+    if known is None or book is None:
         raise _NoAnswerError("the rulebook has mistakes: fix them first")
     names, _ = known
     rule = lenses.rule_of(names, name)
     if rule is None:
         raise _NoAnswerError(f"the rulebook has no rule `{name}`")
-    return names, resolved.rulebook, rule
+    return names, book, rule
 
 
 async def _examples(server: EditorSession, subject: RuleInDocument) -> ExampleAnswer:

@@ -47,8 +47,7 @@ class KnownAnswers:
 
 def rule_of(names: DocumentNames, name: str) -> Rule | None:
     """A rule of the document after resolution; None if its rulebook has mistakes."""
-    resolved = names.checked.resolved
-    book = None if resolved is None else resolved.rulebook
+    book = names.checked.resolved.rulebook
     return None if book is None else next((rule for rule in book.rules if rule.name == name), None)
 
 

@@ -320,13 +320,10 @@ class DocumentNames:
         return min(here)[2] if here else None
 
 
-def names_in_document(checked: CheckedDocument) -> DocumentNames | None:
-    """The names of a document; None if it could not be parsed at all."""
-    resolved = checked.resolved
-    if resolved is None:
-        return None
-    trees = resolved.trees
-    return DocumentNames(checked, NamesOfChain(resolved.names, trees.books, trees.vocabularies))
+def names_in_document(checked: CheckedDocument) -> DocumentNames:
+    """The names of a document."""
+    trees, names = checked.resolved.trees, checked.resolved.names
+    return DocumentNames(checked, NamesOfChain(names, trees.books, trees.vocabularies))
 
 
 def item_at(names: DocumentNames, offset: int) -> tree.Item | None:

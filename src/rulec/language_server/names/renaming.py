@@ -6,6 +6,7 @@ import os
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from lsprotocol import types as lsp
@@ -240,7 +241,7 @@ def _meaning(
     checked: CheckedDocument, symbol: NamedSymbol, name: str
 ) -> tuple[dict[str, Rule], object] | None:
     """The rules and their order, with the old name replaced by the new one."""
-    book = None if checked.resolved is None else checked.resolved.rulebook
+    book = checked.resolved.rulebook
     if book is None:
         return None
 
@@ -339,12 +340,8 @@ def books_with(
             continue
         if not word.search(document.text):
             continue
-        try:
-            other = names_in_document(editor.check(document))
-        except RulecError:
-            continue
-        if other is not None:
-            yield other
+        with suppress(RulecError):
+            yield names_in_document(editor.check(document))
 
 
 def _owner(variable: NamedSymbol, names: DocumentNames) -> str:
