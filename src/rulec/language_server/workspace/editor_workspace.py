@@ -49,11 +49,7 @@ class CheckedDocument:
     text: str
     source: Source
     resolved: ResolvedTrees
-
-    @property
-    def findings(self) -> tuple[Diagnostic, ...]:
-        """What is wrong or worth a warning."""
-        return self.resolved.findings
+    findings: tuple[Diagnostic, ...]
 
 
 @dataclass(slots=True)
@@ -164,8 +160,14 @@ class EditorWorkspace:
         with self.as_shown():
             resolved = self._resolved(document)
         source = resolved.trees.books[-1].span.source
-        name, path = document.name, document.path
-        document.checked = CheckedDocument(name, path, document.text, source, resolved=resolved)
+        document.checked = CheckedDocument(
+            document.name,
+            document.path,
+            document.text,
+            source,
+            resolved=resolved,
+            findings=resolved.findings,
+        )
         return document.checked
 
     def _resolved(self, document: Document) -> ResolvedTrees:
