@@ -12,6 +12,8 @@ from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula
 
+_Named = tree.RuleItem | tree.TypeItem | tree.EnumerationItem | tree.QuantityItem | tree.Definition
+_EVENT = lsp.SymbolKind.Event
 _KINDS = {
     tree.RuleItem: lsp.SymbolKind.Method,
     tree.DefineItem: lsp.SymbolKind.Function,
@@ -21,9 +23,9 @@ _KINDS = {
     tree.TypeItem: lsp.SymbolKind.Class,
     tree.EnumerationItem: lsp.SymbolKind.Enum,
     tree.QuantityItem: lsp.SymbolKind.Number,
-    tree.DropItem: lsp.SymbolKind.Event,
-    tree.SoftenItem: lsp.SymbolKind.Event,
-    tree.SilentItem: lsp.SymbolKind.Event,
+    tree.DropItem: _EVENT,
+    tree.SoftenItem: _EVENT,
+    tree.SilentItem: _EVENT,
 }
 
 
@@ -46,45 +48,35 @@ def _symbols(
             detail=detail or None,
         )
 
-    match item:
-        case tree.RuleItem():
-            rule = symbol(item.name, _KINDS[tree.RuleItem], item.span, _detail(item))
-            rule.children = [
-                lsp.DocumentSymbol(
-                    name=f"{'accept' if example.accepts else 'reject'} {example.label or number}",
-                    kind=lsp.SymbolKind.Event,
-                    range=positions.range(*names.bounds(example.span)),
-                    selection_range=positions.range(*names.bounds(example.span)),
-                )
+    if isinstance(item, tree.SignalItem):
+        for head in item.signals:
+            yield symbol(head.name, lsp.SymbolKind.Variable, item.span, "signal")
+    elif isinstance(item, tree.TopicsItem):
+        for entry in item.entries:
+            yield symbol(entry.name, lsp.SymbolKind.Namespace, entry.span, entry.title.value)
+    elif isinstance(item, _Named):
+        own = symbol(item.name, _KINDS[type(item)], item.span, _detail(item))
+        if isinstance(item, tree.RuleItem):
+            own.children = [
+                symbol(tree.Name(_title(example, number), span=example.span), _EVENT, example.span)
                 for number, example in enumerate(item.examples, 1)
             ]
-            yield rule
-        case tree.SignalItem(signals):
-            for head in signals:
-                yield symbol(head.name, lsp.SymbolKind.Variable, item.span, "signal")
-        case tree.ParamItem(name, _, value) | tree.SetItem(name, value):
+        yield own
+
+
+def _title(example: tree.ExampleItem, number: int) -> str:
+    return f"{'accept' if example.accepts else 'reject'} {example.label or number}"
+
+
+def _detail(item: tree.Item) -> str:
+    match item:
+        case tree.RuleItem(strength, cite=cite):
+            deed = "confirm" if item.confirm else "override" if item.override else ""
+            return " ".join(filter(None, (deed, strength, cite.value if cite else "")))
+        case tree.ParamItem(value=value) | tree.SetItem(value=value):
             text = print_formula(value) if not isinstance(value, bool) else "on" if value else "off"
-            yield symbol(name, _KINDS[type(item)], item.span, f"= {text}")
-        case (
-            tree.DefineItem(name)
-            | tree.OptionItem(name)
-            | tree.TypeItem(name)
-            | tree.EnumerationItem(name)
-            | tree.QuantityItem(name)
-            | tree.DropItem(name)
-            | tree.SoftenItem(name)
-            | tree.SilentItem(name)
-        ):
-            yield symbol(name, _KINDS[type(item)], item.span)
-        case tree.TopicsItem(entries):
-            for entry in entries:
-                yield symbol(entry.name, lsp.SymbolKind.Namespace, entry.span, entry.title.value)
-
-
-def _detail(rule: tree.RuleItem) -> str:
-    deed = "confirm" if rule.confirm else "override" if rule.override else ""
-    words = (deed, rule.strength or "", rule.cite.value if rule.cite else "")
-    return " ".join(filter(None, words))
+            return f"= {text}"
+    return ""
 
 
 def folds(names: DocumentNames, positions: TextPositions) -> list[lsp.FoldingRange]:

@@ -12,7 +12,6 @@ from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.rulebook.names.referenced_names import formulas_of, parts_of
 from rulec.syntax import tree
 from rulec.syntax.keywords import BINDS_NARROWLY, JOINS_ALIKE
-from rulec.vocabulary import Quantity
 
 
 def inlay_hints(
@@ -95,7 +94,7 @@ def _units(formula: tree.Compare | tree.Arithmetic, names: DocumentNames) -> Ite
     for number, other in (sides, sides[::-1]):
         if not isinstance(number, tree.NumberLiteral) or not isinstance(other, tree.AtomUse):
             continue
-        unit = _unit_of(other, names)
+        unit = names.chain.names.symbols.unit_meant(other.name.text)
         if not unit or unit == number.unit:
             continue
         end = names.bounds(number.span)[1]
@@ -108,15 +107,6 @@ def _units(formula: tree.Compare | tree.Arithmetic, names: DocumentNames) -> Ite
         if theirs is not None and own is not None and theirs.dimension == own.dimension:
             amount = float(number.text) * float(own.factor / theirs.factor)
             yield end, f" = {amount:.6g} {unit}", f"in the unit of `{other.name.text}`"
-
-
-def _unit_of(use: tree.AtomUse, names: DocumentNames) -> str:
-    items, name = names.chain.names.symbols.items, use.name.text
-    for head in (name, *(name[:at] for at, letter in enumerate(name) if letter == "_")):
-        item = items.get(head)
-        if isinstance(item, Quantity):
-            return item.unit
-    return ""
 
 
 def _value(use: tree.AtomUse, names: DocumentNames) -> Iterator[Hint]:
