@@ -11,7 +11,7 @@ from rulec.diagnostics import Diagnostic
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, PAST, operations_of
 from rulec.logic.free_names import names_of, terms_of
-from rulec.rulebook.elaborate import meaning_messages as say
+from rulec.rulebook.elaborate import constant_messages as say
 from rulec.rulebook.elaborate.elaboration import number, truth
 from rulec.rulebook.elaborate.macro_expansion import parameter_value
 from rulec.rulebook.elaborate.scope import Scope, bound_variables
@@ -39,7 +39,7 @@ def meanings_of(
         circle = _place(name, found, ordered, ())
         if circle:
             item = constants.overlay.meanings[name]
-            mistakes.append(say.circle(item, circle))
+            mistakes.append(say.meanings_circle(item, circle))
             return MappingProxyType({}), mistakes
     return MappingProxyType(ordered), mistakes
 
