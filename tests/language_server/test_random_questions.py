@@ -66,7 +66,7 @@ def ask_everything(editor, document, offset):
     signature(names, offset)
     found = len(completions(names, offset, positions, editor))
     for one in names.all():
-        assert document.text[slice(*names.bounds(one.span))] == one.span.text
+        assert document.text[one.span.start : one.span.end] == one.span.text
         hover_text(names, one)
         declaration_of(names, one.symbol, editor)
     one = names.at(offset)

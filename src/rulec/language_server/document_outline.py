@@ -31,20 +31,18 @@ _KINDS = {
 
 def outline(names: DocumentNames, positions: TextPositions) -> list[lsp.DocumentSymbol]:
     """The items of a document by name; a rule's examples are its children."""
-    return [symbol for item in names.file.items for symbol in _symbols(item, names, positions)]
+    return [symbol for item in names.file.items for symbol in _symbols(item, positions)]
 
 
-def _symbols(
-    item: tree.Item, names: DocumentNames, positions: TextPositions
-) -> Iterator[lsp.DocumentSymbol]:
+def _symbols(item: tree.Item, positions: TextPositions) -> Iterator[lsp.DocumentSymbol]:
     def symbol(
         name: tree.Name, kind: lsp.SymbolKind, span: Span, detail: str = ""
     ) -> lsp.DocumentSymbol:
         return lsp.DocumentSymbol(
             name=name.text,
             kind=kind,
-            range=positions.range(*names.bounds(span)),
-            selection_range=positions.range(*names.bounds(name.span)),
+            range=positions.of(span),
+            selection_range=positions.of(name.span),
             detail=detail or None,
         )
 
@@ -88,7 +86,7 @@ def folds(names: DocumentNames, positions: TextPositions) -> list[lsp.FoldingRan
             spans += (example.span for example in item.examples)
     ranges = [
         lsp.FoldingRange(start_line=whole.start.line, end_line=whole.end.line)
-        for whole in (positions.range(*names.bounds(span)) for span in spans)
+        for whole in map(positions.of, spans)
         if whole.end.line > whole.start.line
     ]
     return [*ranges, *_comment_folds(positions.text)]

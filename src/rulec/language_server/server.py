@@ -139,7 +139,7 @@ def _names(server: EditorSession) -> None:
         if occurrence is None:
             return None
         text = lsp.MarkupContent(lsp.MarkupKind.Markdown, hover_text(names, occurrence))
-        return lsp.Hover(text, positions.range(*names.bounds(occurrence.span)))
+        return lsp.Hover(text, positions.of(occurrence.span))
 
     @_asked(server, lsp.TEXT_DOCUMENT_DEFINITION, around=True)
     def definition(

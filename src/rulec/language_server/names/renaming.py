@@ -121,7 +121,7 @@ def _in_topics(
         1
         for book in books_with(symbol, names, editor)
         for occurrence in book.all()
-        if book.is_same(occurrence.symbol, symbol, names) and not occurrence.listed
+        if occurrence.symbol.is_same(symbol) and not occurrence.listed
         if _heads_a_rule(book, occurrence.span.start, occurrence.span.end)
     )
     done: set[tuple[str, int]] = set()
@@ -135,7 +135,7 @@ def _in_topics(
             for entry in _topic_entries(file):
                 if not any(rule.text == longest for rule in entry.rules):
                     continue
-                change = _in_topic(entry, symbol.name, name, book, others)
+                change = _in_topic(entry, symbol.name, name, others)
                 if change is not None and (uri, change.start) not in done:
                     done.add((uri, change.start))
                     yield uri, change
@@ -161,7 +161,7 @@ def _longest_listed(rule: str, book: DocumentNames) -> str:
 
 
 def _in_topic(
-    entry: tree.TopicEntry, old: str, new: str, book: DocumentNames, others: Mapping[str, int]
+    entry: tree.TopicEntry, old: str, new: str, others: Mapping[str, int]
 ) -> TextChange | None:
     """The change of a topic's rules: the name is replaced, or appended."""
 
@@ -172,7 +172,7 @@ def _in_topic(
     if not listed or any(is_of(new, name) for name in entry.rules):
         return None
     longest = max(listed, key=lambda name: len(name.text))
-    start, end = book.bounds(longest.span)
+    start, end = longest.span.start, longest.span.end
     still = any(count > 0 and is_of(rule, longest) for rule, count in others.items())
     if longest.text == old and not still:
         return TextChange(start, end, new)
@@ -281,7 +281,7 @@ def placeholder(
     if occurrence is None:
         raise RefusedRenamingError("there is no name here to rename")
     refuse_in_general(occurrence.symbol, editor)
-    return occurrence.symbol, *names.bounds(occurrence.span)
+    return occurrence.symbol, occurrence.span.start, occurrence.span.end
 
 
 @dataclass(frozen=True, slots=True)
@@ -302,7 +302,7 @@ def declaration_of(
     """Where a symbol is declared."""
     span = symbol.span
     positions = editor.positions(names.text_of(span))
-    return lsp.Location(uri_of(span.source.name), positions.range(*names.bounds(span)))
+    return lsp.Location(uri_of(span.source.name), positions.of(span))
 
 
 def references_to(
@@ -311,7 +311,7 @@ def references_to(
     """All places of a symbol's name."""
     places: dict[tuple[str, int], NamePlace] = {}
     for book in books_with(symbol, names, editor):
-        for place in _in_document(symbol, names, book, editor):
+        for place in _in_document(symbol, book, editor):
             places.setdefault((place.uri, place.start), place)
     declared = uri_of(symbol.span.source.name)
     return sorted(
@@ -355,14 +355,13 @@ def _owner(variable: NamedSymbol, names: DocumentNames) -> str:
 
 
 def _in_document(
-    symbol: NamedSymbol, origin: DocumentNames, names: DocumentNames, editor: EditorWorkspace
+    symbol: NamedSymbol, names: DocumentNames, editor: EditorWorkspace
 ) -> Iterator[NamePlace]:
     uri = uri_of(names.checked.path or names.checked.name)
     positions = editor.positions(names.checked.text)
     for occurrence in names.all():
-        if names.is_same(occurrence.symbol, symbol, origin):
-            start, end = names.bounds(occurrence.span)
-            location = lsp.Location(uri, positions.range(start, end))
-            yield NamePlace(
-                uri, start, end, location, declares=occurrence.declares, listed=occurrence.listed
-            )
+        if occurrence.symbol.is_same(symbol):
+            span = occurrence.span
+            location = lsp.Location(uri, positions.of(span))
+            marks = occurrence.declares, occurrence.listed
+            yield NamePlace(uri, span.start, span.end, location, *marks)

@@ -164,8 +164,7 @@ def _scope(names: DocumentNames, piece: PieceAtCursor, offset: int) -> dict[str,
             for parameter in item.variables or inherited:
                 scope[parameter.name.text] = parameter.type.text if parameter.type else ""
             for example in item.examples:
-                start, end = names.bounds(example.span)
-                if start <= offset <= end:
+                if example.span.start <= offset <= example.span.end:
                     scope |= {o.name.text: o.type.text for o in example.objects if o.type}
         case tree.DefineItem(parameters=parameters):
             scope = {x.name.text: x.type.text if x.type else "" for x in parameters}
