@@ -8,7 +8,7 @@ resolved.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Literal
 
 from rulec.diagnostics import Source, Span
@@ -555,11 +555,11 @@ class File(SyntaxNode):
 def parts_of(node: SyntaxNode) -> Iterator[tuple[str, SyntaxNode]]:
     """The nodes in a node, with the names of their fields; the two ends of a bound may be one."""
     before = None
-    for own in fields(node):
-        value = getattr(node, own.name)
+    for own in node.__slots__:  # it inherits none that have nodes
+        value = getattr(node, own)
         for part in value if isinstance(value, tuple) else (value,):
             if isinstance(part, SyntaxNode) and part is not before:
-                yield own.name, part
+                yield own, part
                 before = part
 
 
