@@ -13,8 +13,8 @@ from rulec.language_server.names.name_occurrences import names_in_document
 from rulec.language_server.names.renaming import (
     RefusedRenamingError,
     declaration_of,
-    placeholder,
     references_to,
+    to_rename,
 )
 from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.language_server.writing.quick_fixes import code_action, quick_fixes
@@ -73,7 +73,7 @@ def ask_everything(editor, document, offset):
     if one is not None:
         references_to(one.symbol, names, editor)
         with suppress(RefusedRenamingError):
-            placeholder(names, offset, editor)
+            to_rename(names, offset, editor)
     return found
 
 

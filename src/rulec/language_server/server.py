@@ -30,9 +30,9 @@ from rulec.language_server.names.name_occurrences import DocumentNames
 from rulec.language_server.names.renaming import (
     RefusedRenamingError,
     declaration_of,
-    placeholder,
     references_to,
     renamed,
+    to_rename,
     workspace_edit,
 )
 from rulec.language_server.workspace.editor_workspace import path_of
@@ -154,28 +154,29 @@ def _names(server: EditorSession) -> None:
     def references(
         params: lsp.ReferenceParams, names: DocumentNames, positions: TextPositions
     ) -> list[lsp.Location]:
-        occurrence = names.at(positions.offset(params.position))
+        named = names.at(positions.offset(params.position))
         return [
-            place.location
-            for place in (
-                references_to(occurrence.symbol, names, server.editor) if occurrence else ()
+            location
+            for location, occurrence in (
+                references_to(named.symbol, names, server.editor) if named else ()
             )
-            if params.context.include_declaration or not place.declares
+            if params.context.include_declaration or not occurrence.declares
         ]
 
     @_asked(server, lsp.TEXT_DOCUMENT_PREPARE_RENAME)
     def prepare(
         params: lsp.PrepareRenameParams, names: DocumentNames, positions: TextPositions
     ) -> lsp.PrepareRenamePlaceholder:
-        symbol, *bounds = placeholder(names, positions.offset(params.position), server.editor)
-        return lsp.PrepareRenamePlaceholder(positions.range(*bounds), symbol.name)
+        named = to_rename(names, positions.offset(params.position), server.editor)
+        return lsp.PrepareRenamePlaceholder(positions.of(named.span), named.symbol.name)
 
     @_asked(server, lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
     def rename(
         params: lsp.RenameParams, names: DocumentNames, positions: TextPositions
     ) -> lsp.WorkspaceEdit:
-        symbol, *_ = placeholder(names, positions.offset(params.position), server.editor)
-        return workspace_edit(renamed(symbol, params.new_name, names, server.editor), server.editor)
+        named = to_rename(names, positions.offset(params.position), server.editor)
+        changes = renamed(named.symbol, params.new_name, names, server.editor)
+        return workspace_edit(changes, server.editor)
 
 
 def _writing(server: EditorSession) -> None:

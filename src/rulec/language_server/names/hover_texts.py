@@ -163,11 +163,9 @@ def value_text(number: NumberByCases) -> str:
 
 
 def _type_of(names: DocumentNames, symbol: NamedSymbol) -> str:
-    source, start = symbol.span.source, symbol.span.start
-    items = [item for book in names.chain.books for item in book.items]
-    here = [x for x in items if x.span.source is source and x.span.start <= start < x.span.end]
-    parameters = (x for item in here for x in tree.nodes_in(item) if isinstance(x, tree.Parameter))
-    types = (x.type for x in parameters if x.name.span.start == start)
+    nodes = (node for item in names.chain.items_at(symbol) for node in tree.nodes_in(item))
+    parameters = (node for node in nodes if isinstance(node, tree.Parameter))
+    types = (x.type for x in parameters if x.name.span.start == symbol.span.start)
     return next((kind.text for kind in types if kind is not None), "")
 
 

@@ -121,6 +121,13 @@ class NamesOfChain:
         entry = self.names.constants.overlay.topics.get(name)
         return None if entry is None else NamedSymbol("topic", name, entry.name.span)
 
+    def items_at(self, symbol: NamedSymbol) -> Iterator[tree.Item]:
+        """The items of the rulebooks that a symbol is declared in."""
+        source, start = symbol.span.source, symbol.span.start
+        for item in (item for book in self.books for item in book.items):
+            if item.span.source is source and item.span.start <= start < item.span.end:
+                yield item
+
     def file(self, name: str) -> NamedSymbol | None:
         """The rulebook or vocabulary with this name."""
         for file in (*self.books[:-1], *self.vocabularies):
