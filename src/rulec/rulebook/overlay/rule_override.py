@@ -8,10 +8,11 @@ from itertools import chain
 from rulec.rulebook.names.referenced_names import chain_of, names_in, names_used
 from rulec.syntax import tree
 
-_CLAUSES = (
-    *("strength", "variables", "require", "cite", "says", "examples", "level", "weight"),
-    *("unless", "when", "source", "certainty", "in_force", "topics"),
+CLAUSES = (
+    *("strength", "variables", "level", "weight", "cite", "says", "source", "certainty"),
+    *("in_force", "topics", "require", "when", "unless", "examples"),
 )
+"""The fields of a rule's tree that an override may replace."""
 
 
 def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
@@ -21,11 +22,17 @@ def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
     """
     if over.cite:
         base = replace(base, source=None, certainty="")
-    given = {clause: value for clause in _CLAUSES if (value := getattr(over, clause))}
+    given = {clause: value for clause in CLAUSES if (value := getattr(over, clause))}
     if not _replaces_exceptions(over):
         given["unless"] = (*base.unless, *over.unless)
     complete = over.complete and base.complete
     return replace(base, name=over.name, span=over.span, complete=complete, **given)
+
+
+def softened(rule: tree.RuleItem, item: tree.SoftenItem) -> tree.RuleItem:
+    """The rule as a line softens it."""
+    level, weight = item.level or rule.level, item.weight or rule.weight
+    return replace(rule, strength="soft", level=level, weight=weight)
 
 
 def lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Parameter]:
