@@ -57,34 +57,27 @@ def _all(rule: Rule) -> Iterator[Antecedent]:
 
 
 def _of(formula: ltl.Formula) -> Iterator[Antecedent]:
-    match formula:
-        case ltl.Binary(ltl.BinaryOperator.AND, left, right):
-            yield from _of(left)
-            yield from _of(right)
-        case ltl.Unary(ltl.UnaryOperator.ALWAYS, operand):
-            yield from _implied(operand)
-        case ltl.Unary(ltl.UnaryOperator.NEVER, operand):
-            yield from _first_phase(operand)
+    for part in ltl.chain_of(ltl.BinaryOperator.AND, formula):
+        match part:
+            case ltl.Unary(ltl.UnaryOperator.ALWAYS, operand):
+                yield from _implied(operand)
+            case ltl.Unary(ltl.UnaryOperator.NEVER, operand):
+                yield from _first_phases(operand)
 
 
 def _implied(formula: ltl.Formula) -> Iterator[Antecedent]:
-    match formula:
-        case ltl.Binary(ltl.BinaryOperator.AND, left, right):
-            yield from _implied(left)
-            yield from _implied(right)
-        case ltl.Binary(ltl.BinaryOperator.IMPLIES, left, _):
-            yield Antecedent("implies", left)
-        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
-            yield from _first_phase(operand)
+    for part in ltl.chain_of(ltl.BinaryOperator.AND, formula):
+        match part:
+            case ltl.Binary(ltl.BinaryOperator.IMPLIES, left, _):
+                yield Antecedent("implies", left)
+            case ltl.Unary(ltl.UnaryOperator.NOT, operand):
+                yield from _first_phases(operand)
 
 
-def _first_phase(formula: ltl.Formula) -> Iterator[Antecedent]:
-    match formula:
-        case ltl.Binary(ltl.BinaryOperator.THEN, first, _):
-            yield Antecedent("phase", first)
-        case ltl.Binary(ltl.BinaryOperator.OR, left, right):
-            yield from _first_phase(left)
-            yield from _first_phase(right)
+def _first_phases(formula: ltl.Formula) -> Iterator[Antecedent]:
+    for part in ltl.chain_of(ltl.BinaryOperator.OR, formula):
+        if isinstance(part, ltl.Binary) and part.operator is ltl.BinaryOperator.THEN:
+            yield Antecedent("phase", part.left)
 
 
 def occurrence(rule: Rule, trigger: Antecedent, name: str) -> Rule:
