@@ -202,7 +202,7 @@ def test_it_agrees_with_the_rulebook_as_meant(done):
 
     from rulec.rulebook.resolve import resolve
 
-    rulebook, _ = resolve(files, at="2024-01-01")
+    rulebook = resolve(files, at="2024-01-01").rulebook
     if gone:
         assert (history.rule, rulebook.rules) == (None, ())
         assert rulebook.remarks[-1].because == history.last.because

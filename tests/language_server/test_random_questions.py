@@ -13,8 +13,8 @@ from rulec.language_server.names.name_occurrences import names_in_document
 from rulec.language_server.names.renaming import (
     RefusedRenamingError,
     declaration_of,
-    placeholder,
     references_to,
+    to_rename,
 )
 from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.language_server.writing.quick_fixes import code_action, quick_fixes
@@ -66,14 +66,14 @@ def ask_everything(editor, document, offset):
     signature(names, offset)
     found = len(completions(names, offset, positions, editor))
     for one in names.all():
-        assert document.text[slice(*names.bounds(one.span))] == one.span.text
+        assert document.text[one.span.start : one.span.end] == one.span.text
         hover_text(names, one)
         declaration_of(names, one.symbol, editor)
     one = names.at(offset)
     if one is not None:
         references_to(one.symbol, names, editor)
         with suppress(RefusedRenamingError):
-            placeholder(names, offset, editor)
+            to_rename(names, offset, editor)
     return found
 
 

@@ -140,8 +140,9 @@ def test_what_is_unreadable_yields_no_rulebook_but_no_second_error():
     rules = "hard rule r { require always p }\nhard rule s { require q and x_1 }\n"
     text = f"rulebook a\nsignal p q\n{rules}"
     tree, (syntax,) = parse(Source("a", text))
-    rulebook, (meaning,) = resolve([tree], at="2026-01-01")
-    assert rulebook is None
+    found = resolve([tree], at="2026-01-01")
+    (meaning,) = found.mistakes
+    assert found.rulebook is None
     assert syntax.place.line == 2
     assert "`x_1`" in meaning.message
 

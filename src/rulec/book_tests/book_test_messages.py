@@ -15,10 +15,8 @@ EXAMPLE_FAILED = Code(
     why="An `accept` example is a trace that the rule must allow, a `reject` example one that it "
     "must forbid. If the outcome differs, either the formula or the example does not express what "
     "is meant. `rulec test` runs all examples.",
-    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
-    "  require always not r(v)\n  reject { b(v); l(v); f(v) }\n}\n",
-    good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
-    "  require always not r(v)\n  reject { b(v); r(v); f(v) }\n}\n",
+    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n  require always not r(v)\n"
+    "  reject { b(v); ⟪l|r⟫(v); f(v) }\n}\n",
     kind="compiled",
 )
 
@@ -28,8 +26,7 @@ NOTHING_TO_RUN = Code(
     why="With `--rule PATTERN`, `rulec test` runs the examples whose `RULE` or `RULE/LABEL` "
     "matches the pattern. If none matches, or those that match are not in force, nothing is tested "
     "and nothing is covered. Each of several patterns has to match something.",
-    bad="rulec test esterle2019 --rule R7",
-    good="rulec test esterle2019 --rule R1",
+    bad="rulec test esterle2019 --rule ⟪R7|R1⟫",
     kind="command",
 )
 
@@ -41,10 +38,8 @@ RULE_NOT_EXERCISED = Code(
     "they would also pass if it required nothing. `rulec test` reports this; with `--coverage` it "
     "also reports what else the examples do not show.",
     bad="rulebook example\nsignal wet, slow default false\nhard rule r {\n"
-    "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n}\n",
-    good="rulebook example\nsignal wet, slow default false\nhard rule r {\n"
     "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n"
-    "  reject { not wet; wet and not slow }\n}\n",
+    "⟪|  reject { not wet; wet and not slow }\n⟫}\n",
     kind="examples",
 )
 

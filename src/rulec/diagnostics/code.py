@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict
 
@@ -53,14 +54,18 @@ class Details(TypedDict, total=False):
     fix: Fix | None
 
 
+_MARKED = re.compile("⟪(.*?)\\|(.*?)⟫", re.DOTALL)
+
+
 @dataclass(frozen=True, slots=True)
 class Code:
     """A kind of mistake, with its explanation for ``rulec explain``.
 
     ``title``: one line. ``why``: its meaning and what to do, in a paragraph. ``bad``: a small
-    example that causes this code and no other. ``good``: the same example, corrected. The hundreds
-    digit of ``code`` is the stage: 1 syntax, 2 names, 3 types and meaning, 4 compiling, 5 traces, 6
-    scenarios and graphs, 7 files, 8 analysis.
+    example that causes this code and no other. ``good``: the same example, corrected; instead,
+    places that differ may be given as ``⟪bad|good⟫`` in ``bad``. The hundreds digit of ``code`` is
+    the stage: 1 syntax, 2 names, 3 types and meaning, 4 compiling, 5 traces, 6 scenarios and
+    graphs, 7 files, 8 analysis.
     """
 
     __repr__ = short_repr
@@ -71,6 +76,12 @@ class Code:
     bad: str = ""
     good: str = ""
     kind: ExampleKind = "rules"
+
+    def __post_init__(self) -> None:
+        if "⟪" in self.bad:
+            bad, good = (_MARKED.sub(rf"\{side}", self.bad) for side in (1, 2))
+            object.__setattr__(self, "bad", bad)
+            object.__setattr__(self, "good", good)
 
     def at(
         self,

@@ -12,6 +12,8 @@ from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula
 
+_Named = tree.RuleItem | tree.TypeItem | tree.EnumerationItem | tree.QuantityItem | tree.Definition
+_EVENT = lsp.SymbolKind.Event
 _KINDS = {
     tree.RuleItem: lsp.SymbolKind.Method,
     tree.DefineItem: lsp.SymbolKind.Function,
@@ -21,70 +23,58 @@ _KINDS = {
     tree.TypeItem: lsp.SymbolKind.Class,
     tree.EnumerationItem: lsp.SymbolKind.Enum,
     tree.QuantityItem: lsp.SymbolKind.Number,
-    tree.DropItem: lsp.SymbolKind.Event,
-    tree.SoftenItem: lsp.SymbolKind.Event,
-    tree.SilentItem: lsp.SymbolKind.Event,
+    tree.DropItem: _EVENT,
+    tree.SoftenItem: _EVENT,
+    tree.SilentItem: _EVENT,
 }
 
 
 def outline(names: DocumentNames, positions: TextPositions) -> list[lsp.DocumentSymbol]:
     """The items of a document by name; a rule's examples are its children."""
-    return [symbol for item in names.file.items for symbol in _symbols(item, names, positions)]
+    return [symbol for item in names.file.items for symbol in _symbols(item, positions)]
 
 
-def _symbols(
-    item: tree.Item, names: DocumentNames, positions: TextPositions
-) -> Iterator[lsp.DocumentSymbol]:
+def _symbols(item: tree.Item, positions: TextPositions) -> Iterator[lsp.DocumentSymbol]:
     def symbol(
         name: tree.Name, kind: lsp.SymbolKind, span: Span, detail: str = ""
     ) -> lsp.DocumentSymbol:
         return lsp.DocumentSymbol(
             name=name.text,
             kind=kind,
-            range=positions.range(*names.bounds(span)),
-            selection_range=positions.range(*names.bounds(name.span)),
+            range=positions.of(span),
+            selection_range=positions.of(name.span),
             detail=detail or None,
         )
 
-    match item:
-        case tree.RuleItem():
-            rule = symbol(item.name, _KINDS[tree.RuleItem], item.span, _detail(item))
-            rule.children = [
-                lsp.DocumentSymbol(
-                    name=f"{'accept' if example.accepts else 'reject'} {example.label or number}",
-                    kind=lsp.SymbolKind.Event,
-                    range=positions.range(*names.bounds(example.span)),
-                    selection_range=positions.range(*names.bounds(example.span)),
-                )
+    if isinstance(item, tree.SignalItem):
+        for head in item.signals:
+            yield symbol(head.name, lsp.SymbolKind.Variable, item.span, "signal")
+    elif isinstance(item, tree.TopicsItem):
+        for entry in item.entries:
+            yield symbol(entry.name, lsp.SymbolKind.Namespace, entry.span, entry.title.value)
+    elif isinstance(item, _Named):
+        own = symbol(item.name, _KINDS[type(item)], item.span, _detail(item))
+        if isinstance(item, tree.RuleItem):
+            own.children = [
+                symbol(tree.Name(_title(example, number), span=example.span), _EVENT, example.span)
                 for number, example in enumerate(item.examples, 1)
             ]
-            yield rule
-        case tree.SignalItem(signals):
-            for head in signals:
-                yield symbol(head.name, lsp.SymbolKind.Variable, item.span, "signal")
-        case tree.ParamItem(name, _, value) | tree.SetItem(name, value):
+        yield own
+
+
+def _title(example: tree.ExampleItem, number: int) -> str:
+    return f"{'accept' if example.accepts else 'reject'} {example.label or number}"
+
+
+def _detail(item: tree.Item) -> str:
+    match item:
+        case tree.RuleItem(strength, cite=cite):
+            deed = "confirm" if item.confirm else "override" if item.override else ""
+            return " ".join(filter(None, (deed, strength, cite.value if cite else "")))
+        case tree.ParamItem(value=value) | tree.SetItem(value=value):
             text = print_formula(value) if not isinstance(value, bool) else "on" if value else "off"
-            yield symbol(name, _KINDS[type(item)], item.span, f"= {text}")
-        case (
-            tree.DefineItem(name)
-            | tree.OptionItem(name)
-            | tree.TypeItem(name)
-            | tree.EnumerationItem(name)
-            | tree.QuantityItem(name)
-            | tree.DropItem(name)
-            | tree.SoftenItem(name)
-            | tree.SilentItem(name)
-        ):
-            yield symbol(name, _KINDS[type(item)], item.span)
-        case tree.TopicsItem(entries):
-            for entry in entries:
-                yield symbol(entry.name, lsp.SymbolKind.Namespace, entry.span, entry.title.value)
-
-
-def _detail(rule: tree.RuleItem) -> str:
-    deed = "confirm" if rule.confirm else "override" if rule.override else ""
-    words = (deed, rule.strength or "", rule.cite.value if rule.cite else "")
-    return " ".join(filter(None, words))
+            return f"= {text}"
+    return ""
 
 
 def folds(names: DocumentNames, positions: TextPositions) -> list[lsp.FoldingRange]:
@@ -96,7 +86,7 @@ def folds(names: DocumentNames, positions: TextPositions) -> list[lsp.FoldingRan
             spans += (example.span for example in item.examples)
     ranges = [
         lsp.FoldingRange(start_line=whole.start.line, end_line=whole.end.line)
-        for whole in (positions.range(*names.bounds(span)) for span in spans)
+        for whole in map(positions.of, spans)
         if whole.end.line > whole.start.line
     ]
     return [*ranges, *_comment_folds(positions.text)]

@@ -154,11 +154,10 @@ class EditorSession(LanguageServer):
         if document is None or uri in self.checks_due:
             return None
         known = document.checked if uri in self.editor.documents else None
-        try:
+        with suppress(RulecError):
             names = names_in_document(known or self.editor.check(document))
-        except RulecError:
-            return None
-        return None if names is None else (names, self.editor.positions(document.text))
+            return names, self.editor.positions(document.text)
+        return None
 
     def names_around(
         self, uri: str, position: lsp.Position
@@ -171,8 +170,7 @@ class EditorSession(LanguageServer):
         view = Document(uri, view_around(document.text, positions.offset(position)))
         with self.checks_due[uri].pause, suppress(RulecError):
             checked = self.editor.check(view)
-            names = names_in_document(replace(checked, text=document.text))
-            return None if names is None else (names, positions)
+            return names_in_document(replace(checked, text=document.text)), positions
         return None
 
 

@@ -8,6 +8,7 @@ import signal
 import sys
 from collections.abc import Awaitable, Callable
 from pathlib import Path
+from typing import Any
 
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcInvalidParams
@@ -29,12 +30,13 @@ from rulec.language_server.names.name_occurrences import DocumentNames
 from rulec.language_server.names.renaming import (
     RefusedRenamingError,
     declaration_of,
-    placeholder,
     references_to,
     renamed,
+    to_rename,
     workspace_edit,
 )
 from rulec.language_server.workspace.editor_workspace import path_of
+from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.language_server.writing.quick_fixes import code_action, quick_fixes
 from rulec.language_server.writing.word_completion import completions, signature
 from rulec.rulebook.reading.rulebook_reader import read_rulebook
@@ -47,10 +49,8 @@ def language_server() -> EditorSession:
     server = EditorSession()
     _documents(server)
     _names(server)
-    _renaming(server)
     _writing(server)
     _layout(server)
-    _between_the_lines(server)
     add_commands(server)
     return server
 
@@ -104,94 +104,96 @@ def _documents(server: EditorSession) -> None:
         server.check_others("")
 
 
+def _asked(
+    server: EditorSession,
+    feature: str,
+    options: Any = None,
+    *,
+    otherwise: Any = None,
+    around: bool = False,
+) -> Callable[[Callable[[Any, DocumentNames, TextPositions], Any]], None]:
+    """Register an answer from the names in a document, and what is said ``otherwise``.
+
+    ``around``: it is about a place, and a view around that is enough while a check is due.
+    """
+
+    def registered(answer: Callable[[Any, DocumentNames, TextPositions], Any]) -> None:
+        @server.feature(feature, options)
+        def asked(params: Any) -> Any:
+            uri = params.text_document.uri
+            known = server.names_around(uri, params.position) if around else server.names(uri)
+            try:
+                return otherwise if known is None else answer(params, *known)
+            except RefusedRenamingError as refused:
+                raise JsonRpcInvalidParams(str(refused)) from None
+
+    return registered
+
+
 def _names(server: EditorSession) -> None:
-    @server.feature(lsp.TEXT_DOCUMENT_HOVER)
-    def hover(params: lsp.HoverParams) -> lsp.Hover | None:
-        known = server.names_around(params.text_document.uri, params.position)
-        if known is None:
-            return None
-        names, positions = known
+    @_asked(server, lsp.TEXT_DOCUMENT_HOVER, around=True)
+    def hover(
+        params: lsp.HoverParams, names: DocumentNames, positions: TextPositions
+    ) -> lsp.Hover | None:
         occurrence = names.at(positions.offset(params.position))
         if occurrence is None:
             return None
         text = lsp.MarkupContent(lsp.MarkupKind.Markdown, hover_text(names, occurrence))
-        return lsp.Hover(text, positions.range(*names.bounds(occurrence.span)))
+        return lsp.Hover(text, positions.of(occurrence.span))
 
-    @server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
-    def definition(params: lsp.DefinitionParams) -> lsp.Location | None:
-        known = server.names_around(params.text_document.uri, params.position)
-        if known is None:
-            return None
-        names, positions = known
-        occurrence = names.at(positions.offset(params.position))
-        return (
-            None if occurrence is None else declaration_of(names, occurrence.symbol, server.editor)
-        )
-
-    @server.feature(lsp.TEXT_DOCUMENT_REFERENCES)
-    def references(params: lsp.ReferenceParams) -> list[lsp.Location]:
-        known = server.names(params.text_document.uri)
-        if known is None:
-            return []
-        names, positions = known
+    @_asked(server, lsp.TEXT_DOCUMENT_DEFINITION, around=True)
+    def definition(
+        params: lsp.DefinitionParams, names: DocumentNames, positions: TextPositions
+    ) -> lsp.Location | None:
         occurrence = names.at(positions.offset(params.position))
         if occurrence is None:
-            return []
+            return None
+        return declaration_of(names, occurrence.symbol, server.editor)
+
+    @_asked(server, lsp.TEXT_DOCUMENT_REFERENCES, otherwise=[])
+    def references(
+        params: lsp.ReferenceParams, names: DocumentNames, positions: TextPositions
+    ) -> list[lsp.Location]:
+        named = names.at(positions.offset(params.position))
         return [
-            place.location
-            for place in references_to(occurrence.symbol, names, server.editor)
-            if params.context.include_declaration or not place.declares
+            location
+            for location, occurrence in (
+                references_to(named.symbol, names, server.editor) if named else ()
+            )
+            if params.context.include_declaration or not occurrence.declares
         ]
 
+    @_asked(server, lsp.TEXT_DOCUMENT_PREPARE_RENAME)
+    def prepare(
+        params: lsp.PrepareRenameParams, names: DocumentNames, positions: TextPositions
+    ) -> lsp.PrepareRenamePlaceholder:
+        named = to_rename(names, positions.offset(params.position), server.editor)
+        return lsp.PrepareRenamePlaceholder(positions.of(named.span), named.symbol.name)
 
-def _renaming(server: EditorSession) -> None:
-    @server.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)
-    def prepare(params: lsp.PrepareRenameParams) -> lsp.PrepareRenamePlaceholder | None:
-        known = server.names(params.text_document.uri)
-        if known is None:
-            return None
-        names, positions = known
-        try:
-            symbol, start, end = placeholder(
-                names, positions.offset(params.position), server.editor
-            )
-        except RefusedRenamingError as refused:
-            raise JsonRpcInvalidParams(str(refused)) from None
-        return lsp.PrepareRenamePlaceholder(positions.range(start, end), symbol.name)
-
-    @server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
-    def rename(params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-        known = server.names(params.text_document.uri)
-        if known is None:
-            return None
-        names, positions = known
-        try:
-            symbol, _, _ = placeholder(names, positions.offset(params.position), server.editor)
-            changes = renamed(symbol, params.new_name, names, server.editor)
-        except RefusedRenamingError as refused:
-            raise JsonRpcInvalidParams(str(refused)) from None
+    @_asked(server, lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
+    def rename(
+        params: lsp.RenameParams, names: DocumentNames, positions: TextPositions
+    ) -> lsp.WorkspaceEdit:
+        named = to_rename(names, positions.offset(params.position), server.editor)
+        changes = renamed(named.symbol, params.new_name, names, server.editor)
         return workspace_edit(changes, server.editor)
 
 
 def _writing(server: EditorSession) -> None:
-    @server.feature(
-        lsp.TEXT_DOCUMENT_COMPLETION, lsp.CompletionOptions(trigger_characters=["(", " ", ","])
-    )
-    def completion(params: lsp.CompletionParams) -> list[lsp.CompletionItem]:
-        known = server.names_around(params.text_document.uri, params.position)
-        if known is None:
-            return []
-        names, positions = known
+    signs = lsp.CompletionOptions(trigger_characters=["(", " ", ","])
+
+    @_asked(server, lsp.TEXT_DOCUMENT_COMPLETION, signs, otherwise=[], around=True)
+    def completion(
+        params: lsp.CompletionParams, names: DocumentNames, positions: TextPositions
+    ) -> list[lsp.CompletionItem]:
         return completions(names, positions.offset(params.position), positions, server.editor)
 
-    @server.feature(
-        lsp.TEXT_DOCUMENT_SIGNATURE_HELP, lsp.SignatureHelpOptions(trigger_characters=["(", ","])
-    )
-    def signature_help(params: lsp.SignatureHelpParams) -> lsp.SignatureHelp | None:
-        known = server.names_around(params.text_document.uri, params.position)
-        if known is None:
-            return None
-        names, positions = known
+    calls = lsp.SignatureHelpOptions(trigger_characters=["(", ","])
+
+    @_asked(server, lsp.TEXT_DOCUMENT_SIGNATURE_HELP, calls, around=True)
+    def signature_help(
+        params: lsp.SignatureHelpParams, names: DocumentNames, positions: TextPositions
+    ) -> lsp.SignatureHelp | None:
         return signature(names, positions.offset(params.position))
 
     @server.feature(
@@ -212,16 +214,6 @@ def _writing(server: EditorSession) -> None:
 
 
 def _layout(server: EditorSession) -> None:
-    @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
-    def symbols(params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
-        known = server.names(params.text_document.uri)
-        return [] if known is None else outline(*known)
-
-    @server.feature(lsp.TEXT_DOCUMENT_FOLDING_RANGE)
-    def folding(params: lsp.FoldingRangeParams) -> list[lsp.FoldingRange]:
-        known = server.names(params.text_document.uri)
-        return [] if known is None else folds(*known)
-
     @server.feature(lsp.TEXT_DOCUMENT_FORMATTING)
     def formatting(params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit]:
         document = server.editor.document(params.text_document.uri)
@@ -235,18 +227,18 @@ def _layout(server: EditorSession) -> None:
             return []
         return [lsp.TextEdit(server.editor.positions(document.text).whole(), text)]
 
-
-def _between_the_lines(server: EditorSession) -> None:
-    @server.feature(lsp.TEXT_DOCUMENT_INLAY_HINT)
-    def hints(params: lsp.InlayHintParams) -> list[lsp.InlayHint]:
-        known = server.names(params.text_document.uri)
-        return [] if known is None else inlay_hints(*known, params.range)
-
-    @server.feature(lsp.TEXT_DOCUMENT_CODE_LENS)
-    def lenses(params: lsp.CodeLensParams) -> list[lsp.CodeLens]:
-        uri = params.text_document.uri
-        known = server.names(uri)
-        return [] if known is None else code_lenses(*known, uri, server.answers)
+    of_documents: dict[str, Callable[[Any, DocumentNames, TextPositions], Any]] = {
+        lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL: lambda _, names, text: outline(names, text),
+        lsp.TEXT_DOCUMENT_FOLDING_RANGE: lambda _, names, text: folds(names, text),
+        lsp.TEXT_DOCUMENT_INLAY_HINT: lambda asked, names, text: inlay_hints(
+            names, text, asked.range
+        ),
+        lsp.TEXT_DOCUMENT_CODE_LENS: lambda asked, names, text: code_lenses(
+            names, text, asked.text_document.uri, server.answers
+        ),
+    }
+    for feature, answer in of_documents.items():
+        _asked(server, feature, otherwise=[])(answer)
 
 
 def serve() -> int:
@@ -339,14 +331,14 @@ RuleInDocument = tuple[DocumentNames, Rulebook, Rule]
 def _rule_asked_about(server: EditorSession, uri: str, name: str) -> RuleInDocument:
     """A document, its rulebook and a rule in it. Raises _NoAnswerError if there are none."""
     known = server.names(uri)
-    resolved = None if known is None else known[0].checked.resolved
-    if known is None or resolved is None or resolved.rulebook is None:
+    book = None if known is None else known[0].checked.resolved.rulebook
+    if known is None or book is None:
         raise _NoAnswerError("the rulebook has mistakes: fix them first")
     names, _ = known
     rule = lenses.rule_of(names, name)
     if rule is None:
         raise _NoAnswerError(f"the rulebook has no rule `{name}`")
-    return names, resolved.rulebook, rule
+    return names, book, rule
 
 
 async def _examples(server: EditorSession, subject: RuleInDocument) -> ExampleAnswer:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from rulec.diagnostics import Span
 from rulec.logic import formula as ltl
+from rulec.logic.formula import parts_in
 
 PAST: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
     (
@@ -118,15 +119,12 @@ def longest_divisor(times: Iterable[Fraction]) -> Fraction:
 
 def operations_of(formula: ltl.Formula) -> Iterator[ltl.Unary | ltl.Binary]:
     """The operations in a formula, except in bodies of counts, each before its operands."""
-    waiting = [formula]
-    while waiting:
-        match waiting.pop():
-            case ltl.Unary(_, operand) as operation:
-                yield operation
-                waiting.append(operand)
-            case ltl.Binary(_, left, right) as operation:
-                yield operation
-                waiting += [right, left]
+    return (part for part in parts_in(formula) if isinstance(part, ltl.Unary | ltl.Binary))
+
+
+def looks_elsewhere(formula: ltl.Formula) -> bool:
+    """Whether a formula refers to other states than the present one."""
+    return any(operation.operator not in BOOLEAN for operation in operations_of(formula))
 
 
 def between_instants(formula: ltl.Formula, step_s: Fraction) -> tuple[Fraction, Span | None] | None:
@@ -145,22 +143,16 @@ def in_steps(formula: ltl.Formula, step_s: Fraction) -> ltl.Formula:
 
     A bound in seconds is about the instants that exist, a whole number of steps away: within 0.5 s
     are, at steps of 0.2 s, those 0.2 and 0.4 s away. Where none exists the range is empty.
+
     Raises ValueError if the step is not positive.
     """
     if step_s <= 0:
         raise ValueError("a step lasts more than 0 s")
-    match formula:
-        case ltl.Unary(operator, operand, bound):
-            return ltl.Unary(operator, in_steps(operand, step_s), _own_in_steps(bound, step_s))
-        case ltl.Binary(operator, left, right, bound):
-            steps = _own_in_steps(bound, step_s)
-            return ltl.Binary(operator, in_steps(left, step_s), in_steps(right, step_s), steps)
-        case ltl.Atom() | ltl.Comparison() | ltl.Same() | ltl.Constant():
-            return formula
-
-
-def _own_in_steps(bound: ltl.Bound | None, step_s: Fraction) -> ltl.Bound | None:
-    return None if bound is None else bound_in_steps(bound, step_s)
+    if not isinstance(formula, ltl.Unary | ltl.Binary):
+        return formula
+    inside = ltl.with_operands(formula, lambda operand: in_steps(operand, step_s))
+    bound = inside.bound
+    return inside if bound is None else replace(inside, bound=bound_in_steps(bound, step_s))
 
 
 def bound_in_steps(bound: ltl.Bound, step_s: Fraction) -> ltl.Bound:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from fractions import Fraction
 from typing import Literal
@@ -169,6 +169,9 @@ class Constant:
     value: bool
 
 
+TRUE, FALSE = Constant(True), Constant(False)
+
+
 @dataclass(frozen=True, slots=True)
 class Bound:
     """The bound of a temporal operator: ``low`` to ``high``, both inclusive.
@@ -260,3 +263,81 @@ def with_operands(
         return Unary(operation.operator, transform(operation.operand), operation.bound)
     left = transform(operation.left)
     return Binary(operation.operator, left, transform(operation.right), operation.bound)
+
+
+def operands_of(formula: Formula | Term) -> tuple[Formula, ...]:
+    """The operands of an operation, from left to right; nothing else has any."""
+    match formula:
+        case Unary(_, operand):
+            return (operand,)
+        case Binary(_, left, right):
+            return left, right
+    return ()
+
+
+def parts_in(formula: Formula) -> Iterator[Formula]:
+    """The formula and its parts, except in bodies of counts, each before its operands."""
+    waiting = [formula]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        waiting += reversed(operands_of(part))
+
+
+def chain_of(operator: BinaryOperator, formula: Formula) -> Iterator[Formula]:
+    """The operands of a chain of one operator from left to right, however it is grouped."""
+    if isinstance(formula, Binary) and formula.operator is operator:
+        yield from chain_of(operator, formula.left)
+        yield from chain_of(operator, formula.right)
+    else:
+        yield formula
+
+
+def negated(formula: Formula) -> Formula:
+    """The negation of a formula, without a double one."""
+    match formula:
+        case Constant(value):
+            return Constant(not value)
+        case Unary(UnaryOperator.NOT, operand):
+            return operand
+    return Unary(UnaryOperator.NOT, formula)
+
+
+def all_of(formulas: Iterable[Formula]) -> Formula:
+    """The conjunction of formulas; true if there are none."""
+    return _joined(BinaryOperator.AND, True, formulas)
+
+
+def any_of(formulas: Iterable[Formula]) -> Formula:
+    """The disjunction of formulas; false if there are none."""
+    return _joined(BinaryOperator.OR, False, formulas)
+
+
+def _joined(operator: BinaryOperator, neutral: bool, formulas: Iterable[Formula]) -> Formula:
+    whole: Formula | None = None
+    for formula in formulas:
+        if formula == Constant(not neutral):
+            return formula
+        if formula != Constant(neutral):
+            whole = formula if whole is None else Binary(operator, whole, formula)
+    return Constant(neutral) if whole is None else whole
+
+
+def with_terms(comparison: Comparison, transform: Callable[[Term], Term]) -> Comparison:
+    """The comparison with transformed terms."""
+    terms = [(factor, transform(term)) for factor, term in comparison.terms]
+    return replace(comparison, terms=tuple(terms))
+
+
+def with_parts(formula: Formula, transform: Callable[[Formula], Formula]) -> Formula:
+    """The formula with transformed operands, or with transformed bodies of what it counts."""
+
+    def counted(term: Term) -> Term:
+        return replace(term, body=transform(term.body)) if isinstance(term, Count) else term
+
+    match formula:
+        case Unary() | Binary():
+            return with_operands(formula, transform)
+        case Comparison():
+            return with_terms(formula, counted)
+    return formula

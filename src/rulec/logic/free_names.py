@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from rulec.logic import formula as ltl
+from rulec.logic.formula import operands_of
 from rulec.logic.linear_comparison import comparison
 from rulec.logic.printing import term_text
 
@@ -24,13 +25,9 @@ def variables_of(part: ltl.Formula | ltl.Term) -> Iterator[str]:
         case ltl.Comparison(terms):
             for _, term in terms:
                 yield from variables_of(term)
-        case ltl.Unary(_, operand):
-            yield from variables_of(operand)
-        case ltl.Binary(_, left, right):
-            yield from variables_of(left)
-            yield from variables_of(right)
-        case ltl.Constant():
-            return
+        case _:
+            for operand in operands_of(part):
+                yield from variables_of(operand)
 
 
 def names_in(part: ltl.Formula | ltl.Term) -> Iterator[str]:
@@ -46,13 +43,9 @@ def names_in(part: ltl.Formula | ltl.Term) -> Iterator[str]:
         case ltl.Comparison(terms):
             for _, term in terms:
                 yield from names_in(term)
-        case ltl.Unary(_, operand):
-            yield from names_in(operand)
-        case ltl.Binary(_, left, right):
-            yield from names_in(left)
-            yield from names_in(right)
-        case ltl.Constant() | ltl.Same():
-            return
+        case _:
+            for operand in operands_of(part):
+                yield from names_in(operand)
 
 
 @lru_cache(maxsize=1 << 14)
@@ -109,12 +102,8 @@ def rename_variables(formula: ltl.Formula, names: Mapping[str, str]) -> ltl.Form
             return ltl.Same(*_renamed((left, right), names))
         case ltl.Constant():
             return formula
-        case ltl.Unary(_, operand):
-            return replace(formula, operand=rename_variables(operand, names))
-        case ltl.Binary(_, left, right):
-            return replace(
-                formula, left=rename_variables(left, names), right=rename_variables(right, names)
-            )
+        case ltl.Unary() | ltl.Binary():
+            return ltl.with_operands(formula, lambda operand: rename_variables(operand, names))
 
 
 def renamed_term(term: ltl.Term, names: Mapping[str, str]) -> ltl.Term:

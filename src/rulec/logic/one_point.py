@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import reduce
 
 from rulec.logic import formula as ltl
+from rulec.logic.formula import chain_of, with_parts, with_terms
 from rulec.logic.free_names import rename_variables
 
 _CHAINS = (ltl.BinaryOperator.AND, ltl.BinaryOperator.OR)
@@ -34,16 +35,16 @@ def plain(formula: ltl.Formula, kinds: Mapping[str, str], fits: Fits) -> ltl.For
             return ltl.Unary(ltl.UnaryOperator.NOT, shorter)
         case ltl.Binary(operator) if operator in _CHAINS:
             parts = [
-                part for own in _chain(operator, formula) for part in _chain(operator, inside(own))
+                part
+                for own in chain_of(operator, formula)
+                for part in chain_of(operator, inside(own))
             ]
             return _joined(operator, parts)
         case ltl.Unary() | ltl.Binary():
             return ltl.with_operands(formula, inside)
-        case ltl.Comparison(terms):
-            return _at_one_point(formula, kinds, fits) or replace(
-                formula,
-                terms=tuple([(factor, _counted(term, kinds, fits)) for factor, term in terms]),
-            )
+        case ltl.Comparison():
+            plainly = with_terms(formula, lambda term: _counted(term, kinds, fits))
+            return _at_one_point(formula, kinds, fits) or plainly
     return formula
 
 
@@ -52,9 +53,8 @@ def plainly_counted(formula: ltl.Formula, kinds: Mapping[str, str], fits: Fits) 
     match formula:
         case ltl.Unary() | ltl.Binary():
             return ltl.with_operands(formula, lambda part: plainly_counted(part, kinds, fits))
-        case ltl.Comparison(terms):
-            counted = [(factor, _counted(term, kinds, fits)) for factor, term in terms]
-            return replace(formula, terms=tuple(counted))
+        case ltl.Comparison():
+            return with_terms(formula, lambda term: _counted(term, kinds, fits))
     return formula
 
 
@@ -71,7 +71,7 @@ def _at_one_point(
     count = single_count(formula)
     if count is None or not (is_none(formula) or is_some(formula)):
         return None
-    parts = list(_chain(ltl.BinaryOperator.AND, count.body))
+    parts = list(chain_of(ltl.BinaryOperator.AND, count.body))
     same = ((part, _other_than(count.variable, part)) for part in parts)
     itself, other = next(((part, other) for part, other in same if other), (None, ""))
     if itself is None:
@@ -92,15 +92,6 @@ def _other_than(variable: str, part: ltl.Formula) -> str:
         return ""
     other = part.right if part.left == variable else part.left
     return other if other != variable else ""
-
-
-def _chain(operator: ltl.BinaryOperator, formula: ltl.Formula) -> Iterator[ltl.Formula]:
-    """The operands of a chain of one operator, however it is grouped."""
-    if isinstance(formula, ltl.Binary) and formula.operator is operator:
-        yield from _chain(operator, formula.left)
-        yield from _chain(operator, formula.right)
-    else:
-        yield formula
 
 
 def _joined(operator: ltl.BinaryOperator, parts: list[ltl.Formula]) -> ltl.Formula:
@@ -131,17 +122,4 @@ def is_none(comparison: ltl.Comparison) -> bool:
 def replaced(formula: ltl.Formula, names: Mapping[ltl.Formula, ltl.Formula]) -> ltl.Formula:
     """The formula with the parts that have a name replaced by it, the largest first."""
     name = names.get(formula)
-    if name is not None:
-        return name
-    match formula:
-        case ltl.Unary() | ltl.Binary():
-            return ltl.with_operands(formula, lambda operand: replaced(operand, names))
-        case ltl.Comparison(terms):
-            within = [
-                (factor, replace(term, body=replaced(term.body, names)))
-                if isinstance(term, ltl.Count)
-                else (factor, term)
-                for factor, term in terms
-            ]
-            return replace(formula, terms=tuple(within))
-    return formula
+    return name or with_parts(formula, lambda part: replaced(part, names))

@@ -17,12 +17,12 @@ from typing import Literal
 
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import (
-    BOOLEAN,
     PAST,
     PREVIOUS,
     Range,
     begins_at,
     bound_of,
+    looks_elsewhere,
     range_of_bound,
 )
 
@@ -205,7 +205,7 @@ class _PastParts:
         if not self.with_registers:
             return False
         unsettled = {memory.atom for memory in self.memories.values()}
-        return _is_present(formula) and unsettled.isdisjoint(ltl.atoms_of(formula))
+        return not looks_elsewhere(formula) and unsettled.isdisjoint(ltl.atoms_of(formula))
 
 
 def _present(formula: ltl.Formula, past: _PastParts) -> ltl.Formula:
@@ -265,13 +265,3 @@ def _one_ago(formula: ltl.Formula, past: _PastParts) -> ltl.Formula:
     if formula not in past.memories:
         past.memories[formula] = Memory(past.fresh("memory"), formula)
     return past.memories[formula].atom
-
-
-def _is_present(formula: ltl.Formula) -> bool:
-    match formula:
-        case ltl.Atom() | ltl.Comparison() | ltl.Same() | ltl.Constant():
-            return True
-        case ltl.Unary(operator, operand):
-            return operator in BOOLEAN and _is_present(operand)
-        case ltl.Binary(between, left, right):
-            return between in BOOLEAN and _is_present(left) and _is_present(right)

@@ -13,11 +13,11 @@ from collections.abc import Iterator
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, PAST, bound_of, operations_of
 from rulec.logic.fold import fold_constants
+from rulec.logic.formula import FALSE, TRUE, negated
 from rulec.logic.semantics import Semantics
 
 _NOT, _AND, _OR = ltl.UnaryOperator.NOT, ltl.BinaryOperator.AND, ltl.BinaryOperator.OR
-_TRUE, _FALSE = ltl.Constant(True), ltl.Constant(False)
-_LAST = ltl.Unary(ltl.UnaryOperator.WEAK_NEXT, _FALSE)
+_LAST = ltl.Unary(ltl.UnaryOperator.WEAK_NEXT, FALSE)
 """Holds in the last state of a finite word, and nowhere in an infinite one."""
 
 
@@ -31,7 +31,7 @@ def pastified(formula: ltl.Formula, semantics: Semantics) -> ltl.Formula | None:
     Both hold for the same words, but not at the same places in them, whatever the step of traces
     is if bounds are in seconds.
     """
-    found = _pastified(formula, _TRUE, semantics)
+    found = _pastified(formula, TRUE, semantics)
     return None if found == formula else found
 
 
@@ -46,7 +46,7 @@ def _pastified(formula: ltl.Formula, begun: ltl.Formula, semantics: Semantics) -
             ltl.Unary(ltl.UnaryOperator.NOT, start) as before,
             ltl.Binary(ltl.BinaryOperator.AND, again, inner),
             None,
-        ) if start == again and begun == _TRUE and _is_past(start):
+        ) if start == again and begun == TRUE and _is_past(start):
             since = ltl.Unary(ltl.UnaryOperator.ONCE, start)
             then = ltl.Binary(_AND, start, _pastified(inner, since, semantics))
             return ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, before, then)
@@ -57,7 +57,7 @@ def _pastified(formula: ltl.Formula, begun: ltl.Formula, semantics: Semantics) -
         case _:
             # It is demanded once: at the start.
             before = ltl.Unary(ltl.UnaryOperator.PREVIOUSLY, begun)
-            when, demanded, is_wanted = _and(begun, _not(before)), formula, True
+            when, demanded, is_wanted = _and(begun, negated(before)), formula, True
     bounded = any(x.bound is not None for x in operations_of(demanded))
     if _is_past(demanded) or not (bounded or when == begun):
         return formula
@@ -83,13 +83,13 @@ def _demands(
     Or does not, unless it ``is_wanted``. Raises _NoDutyError if the past cannot say it.
     """
     if _is_past(formula):
-        yield _implies(when, formula if is_wanted else _not(formula))
+        yield _implies(when, formula if is_wanted else negated(formula))
         return
     match formula:
         case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             yield from _demands(when, operand, not is_wanted, semantics)
         case ltl.Binary(ltl.BinaryOperator.IMPLIES, left, right):
-            yield from _demands(when, ltl.Binary(_OR, _not(left), right), is_wanted, semantics)
+            yield from _demands(when, ltl.Binary(_OR, negated(left), right), is_wanted, semantics)
         case ltl.Binary(ltl.BinaryOperator.AND | ltl.BinaryOperator.OR as operator, left, right):
             if (operator is _AND) is is_wanted:
                 yield from _demands(when, left, is_wanted, semantics)
@@ -98,7 +98,7 @@ def _demands(
             told, left_open = (left, right) if _is_past(left) else (right, left)
             if not _is_past(told):
                 raise _NoDutyError
-            without = _not(told) if is_wanted else told
+            without = negated(told) if is_wanted else told
             yield from _demands(_and(when, without), left_open, is_wanted, semantics)
         case ltl.Unary() | ltl.Binary():
             yield from _timed(when, formula, is_wanted, semantics)
@@ -115,11 +115,11 @@ def _timed(
     right: ltl.Formula
     match formula:
         case ltl.Unary(ltl.UnaryOperator.EVENTUALLY, operand):
-            is_until, left, right = True, _TRUE, operand
+            is_until, left, right = True, TRUE, operand
         case ltl.Unary(ltl.UnaryOperator.ALWAYS, operand):
-            is_until, left, right = False, _FALSE, operand
+            is_until, left, right = False, FALSE, operand
         case ltl.Unary(ltl.UnaryOperator.NEVER, operand):
-            is_until, left, right = False, _FALSE, _not(operand)
+            is_until, left, right = False, FALSE, negated(operand)
         case ltl.Binary(ltl.BinaryOperator.UNTIL | ltl.BinaryOperator.THEN, first, then):
             is_until, left, right = True, first, then
         case ltl.Binary(ltl.BinaryOperator.RELEASE, first, then):
@@ -130,7 +130,7 @@ def _timed(
         raise _NoDutyError
     if not is_wanted:
         # A release of the opposites is wanted in place of an until, and the other way round
-        left, right = _not(left), _not(right)
+        left, right = negated(left), negated(right)
     if is_until is is_wanted:
         yield from _deadline(when, left, right, bound, semantics)
     else:
@@ -147,44 +147,35 @@ def _deadline(
     """What holds if ``left until[bound] right`` does wherever ``when`` holds."""
     if bound.low or bound.least or bound.high is None or not _is_past(right):
         raise _NoDutyError
-    missing = _not(right)
+    missing = negated(right)
     asked = _and(when, missing)
     # What has not come at the last instant that there is within the bound comes too late.
     late = ltl.Bound(bound.high, None, bound.unit, early=bound.unit == "s")
-    yield _not(_since(missing, asked, late))
+    yield negated(_since(missing, asked, late))
     waits = _since(missing, asked, None)
-    if left != _TRUE:
-        yield _not(_and(waits, _not(left)))
+    if left != TRUE:
+        yield negated(_and(waits, negated(left)))
     if semantics == "finite":
-        yield _implies(_LAST, _not(waits))
+        yield _implies(_LAST, negated(waits))
 
 
 def _still_held(when: ltl.Formula, left: ltl.Formula, bound: ltl.Bound) -> ltl.Formula:
     """Where ``left release[bound] right`` still asks for ``right`` because ``when`` has held."""
-    if when == _TRUE and left == _FALSE and not (bound.low or bound.least):
-        return _TRUE
-    if left == _FALSE:
-        return _since(_TRUE, when, bound)
+    if when == TRUE and left == FALSE and not (bound.low or bound.least):
+        return TRUE
+    if left == FALSE:
+        return _since(TRUE, when, bound)
     # ``left`` has released nothing before the present state
-    return _since(ltl.Unary(ltl.UnaryOperator.PREVIOUSLY, _not(left)), when, bound)
+    return _since(ltl.Unary(ltl.UnaryOperator.PREVIOUSLY, negated(left)), when, bound)
 
 
 def _since(left: ltl.Formula, right: ltl.Formula, bound: ltl.Bound | None) -> ltl.Formula:
     return ltl.Binary(ltl.BinaryOperator.SINCE, left, right, bound)
 
 
-def _not(formula: ltl.Formula) -> ltl.Formula:
-    match formula:
-        case ltl.Constant(value):
-            return ltl.Constant(not value)
-        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
-            return operand
-    return ltl.Unary(_NOT, formula)
-
-
 def _and(left: ltl.Formula, right: ltl.Formula) -> ltl.Formula:
-    return right if left == _TRUE else ltl.Binary(_AND, left, right)
+    return right if left == TRUE else ltl.Binary(_AND, left, right)
 
 
 def _implies(left: ltl.Formula, right: ltl.Formula) -> ltl.Formula:
-    return right if left == _TRUE else ltl.Binary(ltl.BinaryOperator.IMPLIES, left, right)
+    return right if left == TRUE else ltl.Binary(ltl.BinaryOperator.IMPLIES, left, right)

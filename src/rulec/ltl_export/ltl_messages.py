@@ -12,8 +12,7 @@ TOO_LONG_IN_LTL = Code(
     why="Other tools' formulas have no bounds, so each bound is written out state by state, and "
     "nested bounds multiply. A rule may have bounds of 10,000 steps and 2,000,000 characters of "
     "text. Its automaton is equivalent and small: use `rulec compile` without `--emit ltl`.",
-    bad="rulec compile un-r79 --emit ltl --step 0.0001 -o build\n",
-    good="rulec compile un-r79 --emit ltl --step 0.5 -o build\n",
+    bad="rulec compile un-r79 --emit ltl --step 0.⟪0001|5⟫ -o build\n",
     kind="command",
 )
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from rulec.diagnostics import Diagnostic, Fix, Offer, Source, Span
 from rulec.diagnostics.ways_out import offering
-from rulec.rulebook.allowance_messages import UNFIT_ALLOWANCE
+from rulec.rulebook.rulebook_messages import UNFIT_ALLOWANCE
 
 _ALLOWANCE = re.compile(
     r"#\s*rulec:\s*allow\s+(?P<codes>R\d{4}(?:\s*,\s*R\d{4})*)\b[ \t]*(?:because[ \t]+(?P<why>\S))?"

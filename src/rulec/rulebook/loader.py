@@ -14,7 +14,7 @@ from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import vocabulary_for_rulebook
 from rulec.rulebook.files.referenced_files import Book, ReferencedFiles, source_file
 from rulec.rulebook.overlay.rulebook_overlay import law_line
-from rulec.rulebook.resolve import resolve, resolve_vocabulary
+from rulec.rulebook.resolve import BookNames, Translate, resolve, resolve_vocabulary, translated
 from rulec.rulebook.rulebook_model import Loaded, Rulebook, SourceFile, Traffic, provision_note
 from rulec.rulebook.words_elsewhere import with_words_elsewhere
 from rulec.syntax import decode, parse, tree
@@ -93,6 +93,16 @@ class Trees:
 
 
 @dataclass(frozen=True, slots=True)
+class ResolvedTrees:
+    """Trees, the names their formulas can use, the rulebook if it has no error, all findings."""
+
+    trees: Trees
+    names: BookNames
+    rulebook: Rulebook | None
+    findings: tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnosis:
     """All diagnostics about a file, and the other files that it depends on.
 
@@ -152,10 +162,11 @@ def with_book(trees: Trees, source: Source, search_path: Sequence[Path] = ()) ->
 
 def resolve_trees(trees: Trees, at: str = "", traffic: Traffic = "") -> Loaded:
     """Resolve syntax trees to a rulebook. Raises RulecError with every mistake in them."""
-    loaded, diagnosis = _resolved(trees, at, traffic)
-    if loaded is None:
-        raise RulecError(diagnosis.findings)
-    return loaded
+    found = resolved(trees, at, traffic)
+    if found.rulebook is None:
+        raise RulecError(found.findings)
+    sources = (file.span.source for file in (*trees.books, *trees.vocabularies))
+    return Loaded(found.rulebook, found.findings, {source.name: source for source in sources})
 
 
 def parse_rulebook(
@@ -197,11 +208,11 @@ def diagnose(
         file, mistakes = parse(source) if path is None else parsed(source, keeps=False)
         if file.kind == "rulebook":
             text = RulebookFile(source, data, path, tuple(search_path))
-            return _resolved(trees_of(text, file, mistakes), at)[1]
-        _, meanings = resolve_vocabulary(file)
+            trees = trees_of(text, file, mistakes)
+            return Diagnosis(resolved(trees, at).findings, trees.dependencies)
+        return Diagnosis(vocabulary_findings(file, name, mistakes))
     except RulecError as error:
         return Diagnosis(error.diagnostics)
-    return Diagnosis(in_order(name, judged_allowances([*mistakes, *meanings], source)))
 
 
 def trees_of(file: RulebookFile, own: tree.File, mistakes: Sequence[Diagnostic]) -> Trees:
@@ -230,21 +241,37 @@ def day_of(trees: Trees, at: str = "") -> str:
     return at or (law.as_of if law else "") or date.today().isoformat()  # noqa: DTZ011
 
 
-def _resolved(trees: Trees, at: str, traffic: Traffic = "") -> tuple[Loaded | None, Diagnosis]:
-    rulebook, meanings = resolve(
+def resolved(
+    trees: Trees, at: str = "", traffic: Traffic = "", translate: Translate = translated
+) -> ResolvedTrees:
+    """What trees say, and the diagnostics to report, without those that comments allow.
+
+    For unknown words they name the rulebooks and vocabularies that have them.
+    """
+    made = resolve(
         trees.books,
         trees.vocabularies,
-        sources=trees.sources,
+        trees.sources,
+        translate,
         opaque=trees.dependencies is None,
         at=day_of(trees, at),
         traffic=traffic,
     )
-    findings = reported(trees, [*trees.mistakes, *meanings], trees.books[-1].span.source)
-    diagnosis = Diagnosis(findings, trees.dependencies)
-    if rulebook is None or any(finding.severity == "error" for finding in findings):
-        return None, diagnosis
-    sources = (file.span.source for file in (*trees.books, *trees.vocabularies))
-    return Loaded(rulebook, findings, {source.name: source for source in sources}), diagnosis
+    mistakes = [*trees.mistakes, *made.mistakes]
+    findings = in_order(trees.name, judged_allowances(mistakes, trees.books[-1].span.source))
+    read = [file.name.text for file in (*trees.books, *trees.vocabularies) if file.name]
+    known = with_words_elsewhere(findings, read, trees.search_path)
+    wrong = any(finding.severity == "error" for finding in known)
+    noted = with_provisions(known, trees.books)
+    return ResolvedTrees(trees, made.names, None if wrong else made.rulebook, noted)
+
+
+def vocabulary_findings(
+    file: tree.File, name: str, mistakes: Sequence[Diagnostic]
+) -> tuple[Diagnostic, ...]:
+    """All diagnostics about a vocabulary by itself, some of which are known."""
+    _, meanings = resolve_vocabulary(file)
+    return in_order(name, judged_allowances([*mistakes, *meanings], file.span.source))
 
 
 def _distinct(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
@@ -252,21 +279,6 @@ def _distinct(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
     for use in uses:
         first.setdefault(use.name.text, use)
     return list(first.values())
-
-
-def reported(
-    trees: Trees,
-    mistakes: Sequence[Diagnostic],
-    source: Source,
-) -> tuple[Diagnostic, ...]:
-    """The diagnostics of ``mistakes`` to report, in order, without those that comments allow.
-
-    For unknown words they name the rulebooks and vocabularies that have them.
-    """
-    findings = in_order(trees.name, judged_allowances(mistakes, source))
-    read = [file.name.text for file in (*trees.books, *trees.vocabularies) if file.name]
-    known = with_words_elsewhere(findings, read, trees.search_path)
-    return with_provisions(known, trees.books)
 
 
 def in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:

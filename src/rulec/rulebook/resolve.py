@@ -72,6 +72,15 @@ class TranslatedRule:
     contradictions: tuple[Diagnostic, ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """The names of a rulebook, the rulebook itself if it is sound and whole, and all mistakes."""
+
+    names: BookNames
+    rulebook: Rulebook | None
+    mistakes: tuple[Diagnostic, ...]
+
+
 Translate = Callable[[RuleEntry, BookNames, bool], TranslatedRule]
 """Resolves a rule's entry, given the names it can use, and whether it is the rulebook's own law."""
 
@@ -138,12 +147,13 @@ def names_of(
 def resolve(
     books: Sequence[tree.File],
     vocabularies: Sequence[tree.File] = (),
-    *,
     sources: tuple[SourceFile, ...] = (),
+    translate: Translate = translated,
+    *,
     opaque: bool = False,
     at: str,
     traffic: Traffic = "",
-) -> tuple[Rulebook | None, tuple[Diagnostic, ...]]:
+) -> Resolution:
     """The rulebook as meant, if there is no error and the trees are whole, and what is wrong.
 
     Args:
@@ -151,6 +161,7 @@ def resolve(
             could not be read in them is not complained about again.
         vocabularies: the trees of the vocabularies that they use, each once.
         sources: the files read, for the record.
+        translate: resolves each rule.
         opaque: a vocabulary or a base could not be read, so that any name may be missing for that
             reason.
         at: the day (ISO) whose law it is.
@@ -158,14 +169,14 @@ def resolve(
     """
     names = names_of(books, vocabularies, opaque=opaque, at=at, traffic=traffic)
     whole = not opaque and all(map(is_whole, (*vocabularies, *books)))
-    return with_rules(books, names, sources, whole=whole)
+    return Resolution(names, *_with_rules(books, names, sources, translate, whole=whole))
 
 
-def with_rules(
+def _with_rules(
     books: Sequence[tree.File],
     names: BookNames,
-    sources: tuple[SourceFile, ...] = (),
-    translate: Translate = translated,
+    sources: tuple[SourceFile, ...],
+    translate: Translate,
     *,
     whole: bool,
 ) -> tuple[Rulebook | None, tuple[Diagnostic, ...]]:

@@ -11,9 +11,9 @@ from rulec.diagnostics import RulecError
 from rulec.files.text_templates import filled
 from rulec.rulebook.loader import parse_rulebook, read_trees, resolve_trees
 from rulec.rulebook.names.doc_comments import description
+from rulec.rulebook.rulebook_messages import no_name
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.rulebook.rules.rule_topics import by_group
-from rulec.rulebook.template_messages import no_name
 from rulec.syntax import decode, parse, tree
 
 _NEW = Path(__file__).with_name("new_rulebook.txt")

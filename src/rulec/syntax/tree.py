@@ -7,6 +7,7 @@ resolved.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -17,35 +18,35 @@ NOWHERE = Span(Source("", ""), 0, 0)
 
 
 @dataclass(frozen=True, slots=True)
-class _SyntaxNode:
+class SyntaxNode:
     """A part of a file; its ``span`` is ignored in comparisons."""
 
     span: Span = field(default=NOWHERE, kw_only=True, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Grouping(_SyntaxNode):
+class Grouping(SyntaxNode):
     """A node with optional parentheses around it (``grouped``), which do not affect the meaning."""
 
     grouped: bool = field(default=False, kw_only=True, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Name(_SyntaxNode):
+class Name(SyntaxNode):
     """An identifier."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
-class Text(_SyntaxNode):
+class Text(SyntaxNode):
     """A text in double quotes; ``value`` is without quotes and escapes."""
 
     value: str
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter(_SyntaxNode):
+class Parameter(SyntaxNode):
     """A parameter with its type: ``name: type``.
 
     In a declaration, but not in a rule's head, the type may be omitted.
@@ -56,7 +57,7 @@ class Parameter(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class AtomUse(_SyntaxNode):
+class AtomUse(SyntaxNode):
     """A use of a declared name, possibly with arguments: ``name(arguments)``."""
 
     name: Name
@@ -64,14 +65,14 @@ class AtomUse(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class TruthLiteral(_SyntaxNode):
+class TruthLiteral(SyntaxNode):
     """``true`` or ``false``."""
 
     value: bool
 
 
 @dataclass(frozen=True, slots=True)
-class NumberLiteral(_SyntaxNode):
+class NumberLiteral(SyntaxNode):
     """An unsigned number as written, with its unit, if any: ``1.5 km/h``."""
 
     text: str
@@ -83,7 +84,7 @@ Amount = NumberLiteral | AtomUse
 
 
 @dataclass(frozen=True, slots=True)
-class BoundNode(_SyntaxNode):
+class BoundNode(SyntaxNode):
     """A bound: ``[<= high]``, ``[>= low]``, ``[low .. high]``, or ``[low]``, which is ``exact``."""
 
     low: Amount | None
@@ -147,7 +148,7 @@ class Conditional(Grouping):
 
 
 @dataclass(frozen=True, slots=True)
-class Aggregate(_SyntaxNode):
+class Aggregate(SyntaxNode):
     """``some x: type (body)``, ``every …`` or ``count …``."""
 
     kind: Literal["some", "every", "count"]
@@ -160,7 +161,7 @@ Formula = AtomUse | TruthLiteral | NumberLiteral | Operation | Aggregate
 
 
 @dataclass(frozen=True, slots=True)
-class StateLiteral(_SyntaxNode):
+class StateLiteral(SyntaxNode):
     """A literal of an example's state: ``atom``, ``not atom``, or ``atom = value``.
 
     A ``value`` is a number, inside ``Minus`` if it is negative.
@@ -172,14 +173,14 @@ class StateLiteral(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class ExampleState(_SyntaxNode):
+class ExampleState(SyntaxNode):
     """The literals of an example's state; empty if everything has its default."""
 
     literals: tuple[StateLiteral, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class ExampleItem(_SyntaxNode):
+class ExampleItem(SyntaxNode):
     """``accept "label" (objects) { state; … }`` or ``reject …``."""
 
     accepts: bool
@@ -198,7 +199,7 @@ Scope = Literal["initially", "at start", "throughout", "at some point", "at end"
 
 
 @dataclass(frozen=True, slots=True)
-class Unless(_SyntaxNode):
+class Unless(SyntaxNode):
     """``unless formula scope``; the scope is None if none is written.
 
     ``also unless`` is added to the exceptions that an override inherits.
@@ -210,7 +211,7 @@ class Unless(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class RuleItem(_SyntaxNode):
+class RuleItem(SyntaxNode):
     """A rule, or an ``override`` with only the changed clauses.
 
     ``confirm``: an override that only states whose law the rule is. ``complete`` is false if one of
@@ -238,7 +239,7 @@ class RuleItem(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class TypeItem(_SyntaxNode):
+class TypeItem(SyntaxNode):
     """``type name is parent``."""
 
     name: Name
@@ -246,7 +247,7 @@ class TypeItem(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class EnumerationItem(_SyntaxNode):
+class EnumerationItem(SyntaxNode):
     """``name(parameters) is one of values default value``."""
 
     name: Name
@@ -256,7 +257,7 @@ class EnumerationItem(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class SignalHead(_SyntaxNode):
+class SignalHead(SyntaxNode):
     """One of the signals of a ``signal`` line."""
 
     name: Name
@@ -264,7 +265,7 @@ class SignalHead(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class SignalItem(_SyntaxNode):
+class SignalItem(SyntaxNode):
     """``signal p, q(o: type) default false``."""
 
     signals: tuple[SignalHead, ...]
@@ -272,7 +273,7 @@ class SignalItem(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class QuantityItem(_SyntaxNode):
+class QuantityItem(SyntaxNode):
     """``quantity name(parameters) in unit default number``."""
 
     name: Name
@@ -283,21 +284,21 @@ class QuantityItem(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class FactItem(_SyntaxNode):
+class FactItem(SyntaxNode):
     """``fact formula``: a condition that always holds, for all objects in it."""
 
     formula: Formula
 
 
 @dataclass(frozen=True, slots=True)
-class ConstantItem(_SyntaxNode):
+class ConstantItem(SyntaxNode):
     """``constant names``: their values do not change within a trace."""
 
     names: tuple[Name, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class PresumedItem(_SyntaxNode):
+class PresumedItem(SyntaxNode):
     """``presumed names``: they have their defaults if no source provides them."""
 
     names: tuple[Name, ...]
@@ -309,7 +310,7 @@ Declaration = (
 
 
 @dataclass(frozen=True, slots=True)
-class InForce(_SyntaxNode):
+class InForce(SyntaxNode):
     """Dates in force: ``in force from DATE until DATE``.
 
     They are ISO texts, empty if open. The last day is included.
@@ -320,7 +321,7 @@ class InForce(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class OptionItem(_SyntaxNode):
+class OptionItem(SyntaxNode):
     """The declaration of an option: ``option name = on``."""
 
     name: Name
@@ -328,7 +329,7 @@ class OptionItem(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class ParamItem(_SyntaxNode):
+class ParamItem(SyntaxNode):
     """The declaration of a parameter: ``param name : dimension = value``.
 
     The dimension may be omitted; ``in force …`` may follow.
@@ -341,7 +342,7 @@ class ParamItem(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class SetItem(_SyntaxNode):
+class SetItem(SyntaxNode):
     """``set name = value``, for an inherited option (a bool) or parameter."""
 
     name: Name
@@ -350,7 +351,7 @@ class SetItem(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class DefineItem(_SyntaxNode):
+class DefineItem(SyntaxNode):
     """The definition of a macro: ``define name(parameters) = body``.
 
     A parameter without a type may be a relation.
@@ -365,7 +366,7 @@ class DefineItem(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class DropItem(_SyntaxNode):
+class DropItem(SyntaxNode):
     """``drop rule name because "…"``."""
 
     name: Name
@@ -373,7 +374,7 @@ class DropItem(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class SoftenItem(_SyntaxNode):
+class SoftenItem(SyntaxNode):
     """``soften rule name in level weight number because "…"``."""
 
     name: Name
@@ -383,7 +384,7 @@ class SoftenItem(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class SilentItem(_SyntaxNode):
+class SilentItem(SyntaxNode):
     """``silent on name because "…"``."""
 
     name: Name
@@ -394,7 +395,7 @@ Definition = OptionItem | ParamItem | SetItem | DefineItem | DropItem | SoftenIt
 
 
 @dataclass(frozen=True, slots=True)
-class TopicEntry(_SyntaxNode):
+class TopicEntry(SyntaxNode):
     """``name "title" of rules``: the topic of these rules, unless they state another."""
 
     name: Name
@@ -403,7 +404,7 @@ class TopicEntry(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class TopicsItem(_SyntaxNode):
+class TopicsItem(SyntaxNode):
     """``topics { … }``: the topics that rules can have."""
 
     entries: tuple[TopicEntry, ...]
@@ -414,7 +415,7 @@ Treatment = Literal["to do", "silent", "not machine-readable"]
 
 
 @dataclass(frozen=True, slots=True)
-class ArticleEntry(_SyntaxNode):
+class ArticleEntry(SyntaxNode):
     """``"number" "heading" silent because "…"``: an article, and why no rule is derived from it."""
 
     number: Text
@@ -424,7 +425,7 @@ class ArticleEntry(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class ProvisionsItem(_SyntaxNode):
+class ProvisionsItem(SyntaxNode):
     """``provisions "link" as of DATE certainty WORD { … }``: the articles of a law on a day.
 
     The date is ISO text, empty if not given; so is the certainty of the headings.
@@ -440,7 +441,7 @@ Listing = TopicsItem | ProvisionsItem
 
 
 @dataclass(frozen=True, slots=True)
-class HeaderLine(_SyntaxNode):
+class HeaderLine(SyntaxNode):
     """A line of a file's header."""
 
 
@@ -517,7 +518,7 @@ class PriorityLine(HeaderLine):
 
 
 @dataclass(frozen=True, slots=True)
-class BrokenItem(_SyntaxNode):
+class BrokenItem(SyntaxNode):
     """An unreadable item; it may have declared any of ``names``.
 
     ``word`` is its first word, ``"rule"`` for a rule whose head could not be read. A ``nameless``
@@ -533,7 +534,7 @@ Item = Declaration | Definition | Listing | RuleItem | BrokenItem
 
 
 @dataclass(frozen=True, slots=True)
-class File(_SyntaxNode):
+class File(SyntaxNode):
     """The syntax tree of a file; ``name`` is None if unreadable."""
 
     kind: Literal["rulebook", "vocabulary"]
@@ -549,3 +550,21 @@ class File(_SyntaxNode):
     semantics: SemanticsLine | None = None
     step: StepLine | None = None
     priorities: tuple[PriorityLine, ...] = ()
+
+
+def parts_of(node: SyntaxNode) -> Iterator[tuple[str, SyntaxNode]]:
+    """The nodes in a node, with the names of their fields; the two ends of a bound may be one."""
+    before = None
+    for own in node.__slots__:  # it inherits none that have nodes
+        value = getattr(node, own)
+        for part in value if isinstance(value, tuple) else (value,):
+            if isinstance(part, SyntaxNode) and part is not before:
+                yield own, part
+                before = part
+
+
+def nodes_in(node: SyntaxNode) -> Iterator[SyntaxNode]:
+    """A node and all nodes in it."""
+    yield node
+    for _, part in parts_of(node):
+        yield from nodes_in(part)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from rulec.logic import formula as ltl
+from rulec.logic.formula import with_terms
 from rulec.logic.free_names import reads_in, rename_variables
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.rulebook.rules.axiom_instances import bound_to
@@ -73,8 +74,7 @@ def _canonical(formula: ltl.Formula) -> ltl.Formula:
     if isinstance(formula, ltl.Unary | ltl.Binary):
         return ltl.with_operands(formula, _canonical)
     if isinstance(formula, ltl.Comparison):
-        terms = tuple((factor, canonical_term(term)) for factor, term in formula.terms)
-        return replace(formula, terms=terms)
+        return with_terms(formula, canonical_term)
     return formula
 
 

@@ -12,6 +12,7 @@ from math import inf
 from typing import TypeAlias
 
 from rulec.logic import formula as ltl
+from rulec.logic.formula import operands_of, with_parts
 from rulec.logic.free_names import names_of, rename_variables
 from rulec.rulebook.rulebook_model import Axiom, Rulebook, Variable
 from rulec.vocabulary import Signal
@@ -104,17 +105,7 @@ def _with_names(formula: ltl.Formula, names: dict[str, str]) -> ltl.Formula:
             return ltl.Atom(spelled, formula.arguments)
         case ltl.Atom(name=name) if name in names:
             return replace(formula, name=names[name])
-        case ltl.Comparison(terms):
-            return replace(formula, terms=tuple([(x, _in_count(own, names)) for x, own in terms]))
-        case ltl.Unary() | ltl.Binary():
-            return ltl.with_operands(formula, lambda operand: _with_names(operand, names))
-    return formula
-
-
-def _in_count(term: ltl.Term, names: dict[str, str]) -> ltl.Term:
-    if isinstance(term, ltl.Count):
-        return replace(term, body=_with_names(term.body, names))
-    return term
+    return with_parts(formula, lambda part: _with_names(part, names))
 
 
 def _implications(
@@ -160,14 +151,10 @@ _GROWS: dict[ltl.UnaryOperator | ltl.BinaryOperator, tuple[bool, ...]] = {
 def _in_order(
     cause: ltl.Unary | ltl.Binary, effect: ltl.Unary | ltl.Binary, known: Implied
 ) -> bool:
-    pairs = [
-        (part.operand,) if isinstance(part, ltl.Unary) else (part.left, part.right)
-        for part in (cause, effect)
-    ]
     grows = _GROWS.get(cause.operator)
     if grows is None:
         return False
-    operands = zip(grows, *pairs, strict=True)
+    operands = zip(grows, operands_of(cause), operands_of(effect), strict=True)
     return all(_implies(*((x, y) if up else (y, x)), known) for up, x, y in operands) and (
         cause.bound == effect.bound or _is_looser(cause, effect)
     )

@@ -14,7 +14,7 @@ from rulec.analysis.lineage import rule_lineage
 from rulec.rulebook.loader import Trees, read_trees, resolve_trees
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.names.referenced_names import names_used
-from rulec.rulebook.overlay.rule_override import lost_exceptions, merged
+from rulec.rulebook.overlay.rule_override import CLAUSES, lost_exceptions, merged, softened
 from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.rulebook.rulebook_model import Loaded
 from rulec.syntax import tree
@@ -104,12 +104,7 @@ def _step(
         parts = [unless.span.text.removeprefix("also") for unless in lost_exceptions(before, item)]
         lost = tuple([" ".join(part.split()) for part in parts])
         return rule_lineage.LineageStep(book, deed, after, changed, gives_law=gives_law, lost=lost)
-    after = replace(
-        before,
-        strength="soft",
-        level=item.level or before.level,
-        weight=item.weight or before.weight,
-    )
+    after = softened(before, item)
     why = item.because.value if item.because else ""
     return rule_lineage.LineageStep(book, "softened", after, _changed_clauses(before, after), why)
 
@@ -117,17 +112,11 @@ def _step(
 HARDNESS = "hard or soft"
 """The name, in lists of clauses, of the word before ``rule``."""
 
-_CLAUSES = (
-    *("strength", "variables", "level", "weight", "cite", "says", "source", "certainty"),
-    *("in_force", "topics", "require", "when", "unless", "examples"),
-)
-"""The fields of a rule's tree."""
-
 
 def _changed_clauses(before: tree.RuleItem, after: tree.RuleItem) -> tuple[str, ...]:
     return tuple(
         HARDNESS if field == "strength" else field.replace("_", " ")
-        for field in _CLAUSES
+        for field in CLAUSES
         if getattr(before, field) != getattr(after, field)
     )
 

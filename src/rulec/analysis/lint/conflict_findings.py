@@ -10,7 +10,7 @@ from rulec.analysis.lint.finding_messages import (
     CONTRADICTING_RULES,
     undecided_diagnostic,
 )
-from rulec.analysis.lint.questions import Question, RuleAnswers
+from rulec.analysis.lint.questions import RuleAnswers
 from rulec.analysis.lint.redundancy import small_premises
 from rulec.analysis.lint.related_rules import RelatedRules
 from rulec.analysis.shared_compilation import AnalyzedRule
@@ -24,20 +24,6 @@ from rulec.witnesses.undecided import UndecidedError
 
 Occurring = Mapping[str, Sequence[tuple[Antecedent, str]]]
 """The antecedents of each rule, with the names of the rules that state that they occur."""
-
-
-def conflict_questions(
-    names: Sequence[str], sides: Mapping[str, AnalyzedRule], related: RelatedRules
-) -> Iterator[Question]:
-    """The questions that ``conflicts`` asks if it finds nothing."""
-    chosen = frozenset(names)
-    for pair in related.pairs():
-        if chosen.issuperset(pair):
-            yield Question("conflict", pair)
-    for name in names:
-        group = _group(name, chosen, sides, related)
-        if len(group) > 2:
-            yield Question("conflict", group)
 
 
 def conflicts(
@@ -127,17 +113,6 @@ def _cannot_be_kept(
         ),
         notes=notes,
     )
-
-
-def contradiction_questions(
-    names: Sequence[str],
-    sides: Mapping[str, AnalyzedRule],
-    occurring: Occurring,
-    related: RelatedRules,
-) -> Iterator[Question]:
-    """The questions that ``contradictions`` asks if it finds nothing."""
-    for name, other, _, occurs in _triggered(names, sides, occurring, related):
-        yield Question("conflict", (name, other, occurs))
 
 
 def contradictions(

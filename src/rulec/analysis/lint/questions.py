@@ -5,7 +5,7 @@ They take nearly all of the time, so they may be answered in advance, in several
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, NamedTuple, TypeAlias
@@ -76,10 +76,11 @@ class RuleAnswers:
         self._tell = tell
         self._known: dict[Question, object] = {}
 
-    def ask_ahead(self, questions: Iterable[Question], spread: Spread) -> None:
-        """Compute the answers to questions in advance."""
-        each = list(dict.fromkeys(questions))
-        answers = spread(partial(answers_to, self._rules), each)
+    def ask_ahead(self, use: Callable[[RuleAnswers], object], spread: Spread) -> None:
+        """Compute the answers in advance that are used if nothing is found, as nearly always."""
+        rehearsal = _Rehearsal(self._rules)
+        use(rehearsal)
+        answers = spread(partial(answers_to, self._rules), list(rehearsal.asked))
         for question, answer in answers:
             self._known[question] = answer
             self._tell(len(self._known))
@@ -115,3 +116,24 @@ class RuleAnswers:
         if isinstance(answer, UndecidedError):
             raise answer
         return answer
+
+
+class _Rehearsal(RuleAnswers):
+    """Answers with which nothing is found, and the questions in their order."""
+
+    def __init__(self, rules: ComparedRules) -> None:
+        super().__init__(rules)
+        self.asked: dict[Question, None] = {}
+
+    def _to(self, question: Question) -> Any:
+        self.asked[question] = None
+        return _NOTHING_FOUND[question.kind]
+
+
+_NOTHING_FOUND: Mapping[str, object] = {
+    "kept": True,
+    "violated": True,
+    "implied": (),
+    "conflict": None,
+    "compared": RuleComparison("equal"),
+}

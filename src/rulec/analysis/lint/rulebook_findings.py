@@ -9,13 +9,10 @@ from rulec.analysis.diff.rule_comparison import RuleComparison
 from rulec.analysis.lint import finding_messages
 from rulec.analysis.lint.changing_lines import Change
 from rulec.analysis.lint.conflict_findings import (
-    Occurring,
-    conflict_questions,
     conflicts,
-    contradiction_questions,
     contradictions,
 )
-from rulec.analysis.lint.questions import ComparedRules, Question, RuleAnswers, Spread
+from rulec.analysis.lint.questions import ComparedRules, RuleAnswers, Spread
 from rulec.analysis.lint.related_rules import RelatedRules
 from rulec.analysis.shared_compilation import AnalyzedRule, at_one_step, compile_shared
 from rulec.analysis.trace_display import trace_note
@@ -71,72 +68,57 @@ def rulebook_findings(
     occurring: dict[str, list[tuple[Antecedent, str]]] = {name: [] for name in by_name}
     for asked_name, (conditioned, antecedent) in conditions.items():
         occurring[conditioned.name].append((antecedent, asked_name))
+
+    def findings(answers: RuleAnswers) -> tuple[Diagnostic, ...]:
+        diagnostics: list[Diagnostic] = []
+        good: list[str] = []
+        for name, rule in by_name.items():
+            idle = [*_idle(rule, occurring[name], answers)]
+            diagnostics += [diagnostic for _, diagnostic in idle]
+            # A rule keeps its meaning without an exception that never holds.
+            if all(kind == "unless" for kind, _ in idle):
+                alone = [*_alone(rule, answers)]
+                diagnostics += alone
+                if not alone:
+                    good.append(name)
+        hard = [name for name in good if by_name[name].strength == "hard"]
+        conflicting = [*conflicts(hard, own, by_name, answers, related)]
+        conflict_places = [
+            {one.place, *_labelled(one)} for one in conflicting if one.place is not None
+        ]
+        for name, finding, premises in _needless(good, by_name, answers, related, conflict_places):
+            origins = {by_name[rule].book for rule in (name, *premises)}
+            is_changed = not (changes or {}).keys().isdisjoint((name, *premises))
+            if by_name[name].book == book.name:
+                diagnostics.append(finding)
+            elif is_changed or book.name in origins or not _have_the_same_facts(book, bases):
+                diagnostics.append(_to_drop(name, finding, extends))
+            else:
+                diagnostics.append(_of_base(finding, extends, bases))
+        diagnostics += conflicting
+        diagnostics += contradictions(
+            hard, own, by_name, occurring, answers=answers, related=related
+        )
+        for number, (base, sides) in enumerate(zip(bases, of_bases, strict=True)):
+            for name, side in sides.items():
+                comparison = answers.compared(name, number)
+                change = (changes or {}).get(name)
+                diagnostic = _weaker(by_name[name], (own[name], side), base, comparison, change)
+                if diagnostic is not None:
+                    is_own = by_name[name].book == book.name
+                    inherited_by = _changed(diagnostic, change) or _inherited(diagnostic, extends)
+                    diagnostics.append(diagnostic if is_own else inherited_by)
+        return tuple(diagnostics)
+
     if spread is not None:
-        answers.ask_ahead(_likely(by_name, occurring, own, of_bases, related), spread)
-    diagnostics: list[Diagnostic] = []
-    good: list[str] = []
-    for name, rule in by_name.items():
-        idle = [*_idle(rule, occurring[name], answers)]
-        diagnostics += [diagnostic for _, diagnostic in idle]
-        # A rule keeps its meaning without an exception that never holds.
-        if all(kind == "unless" for kind, _ in idle):
-            alone = [*_alone(rule, answers)]
-            diagnostics += alone
-            if not alone:
-                good.append(name)
-    hard = [name for name in good if by_name[name].strength == "hard"]
-    conflicting = [*conflicts(hard, own, by_name, answers, related)]
-    conflict_places = [{one.place, *_labelled(one)} for one in conflicting if one.place is not None]
-    for name, finding, premises in _needless(good, by_name, answers, related, conflict_places):
-        origins = {by_name[rule].book for rule in (name, *premises)}
-        is_changed = not (changes or {}).keys().isdisjoint((name, *premises))
-        if by_name[name].book == book.name:
-            diagnostics.append(finding)
-        elif is_changed or book.name in origins or not _have_the_same_facts(book, bases):
-            diagnostics.append(_to_drop(name, finding, extends))
-        else:
-            diagnostics.append(_of_base(finding, extends, bases))
-    diagnostics += conflicting
-    diagnostics += contradictions(hard, own, by_name, occurring, answers=answers, related=related)
-    for number, (base, sides) in enumerate(zip(bases, of_bases, strict=True)):
-        for name, side in sides.items():
-            comparison = answers.compared(name, number)
-            change = (changes or {}).get(name)
-            diagnostic = _weaker(by_name[name], (own[name], side), base, comparison, change)
-            if diagnostic is not None:
-                is_own = by_name[name].book == book.name
-                inherited_by = _changed(diagnostic, change) or _inherited(diagnostic, extends)
-                diagnostics.append(diagnostic if is_own else inherited_by)
-    return tuple(diagnostics)
+        answers.ask_ahead(findings, spread)
+    return findings(answers)
 
 
 def _at_one_step(rules: Sequence[Mapping[str, Rule]]) -> list[dict[str, Rule]]:
     """The rules of several rulebooks, for one common step; still by rulebook and name."""
     common = iter(at_one_step([rule for named in rules for rule in named.values()], None))
     return [dict(zip(named, common, strict=False)) for named in rules]
-
-
-def _likely(
-    rules: Mapping[str, Rule],
-    occurring: Occurring,
-    own: Mapping[str, AnalyzedRule],
-    of_bases: Sequence[Mapping[str, AnalyzedRule]],
-    related: RelatedRules,
-) -> Iterator[Question]:
-    """The questions that are asked if nothing is found, which is nearly all of them."""
-    names = [name for own_ones in occurring.values() for _, name in own_ones]
-    for name in (*names, *rules):
-        yield Question("kept", (name,))
-    for name in rules:
-        yield Question("violated", (name,))
-    for name in reversed(list(rules)):
-        yield Question("implied", (name, *_others(name, rules.keys(), rules, related)))
-    hard = [name for name, rule in rules.items() if rule.strength == "hard"]
-    yield from conflict_questions(hard, own, related)
-    yield from contradiction_questions(hard, own, occurring, related)
-    for number, sides in enumerate(of_bases):
-        for name in sides:
-            yield Question("compared", (name,), number)
 
 
 def _others(

@@ -47,8 +47,7 @@ class KnownAnswers:
 
 def rule_of(names: DocumentNames, name: str) -> Rule | None:
     """A rule of the document after resolution; None if its rulebook has mistakes."""
-    resolved = names.checked.resolved
-    book = None if resolved is None else resolved.rulebook
+    book = names.checked.resolved.rulebook
     return None if book is None else next((rule for rule in book.rules if rule.name == name), None)
 
 
@@ -61,7 +60,7 @@ def code_lenses(
         rule = rule_of(names, item.name.text) if isinstance(item, tree.RuleItem) else None
         if rule is None or not isinstance(item, tree.RuleItem):
             continue
-        where = positions.range(*names.bounds(item.name.span))
+        where = positions.of(item.name.span)
         for title, command in _of_rule(item, rule, names, known):
             arguments = [uri, rule.name] if command else None
             lenses.append(lsp.CodeLens(where, lsp.Command(title, command, arguments=arguments)))
@@ -122,7 +121,7 @@ def inserted_example(names: DocumentNames, name: str, example: str) -> TextChang
     """The change that adds an example at the end of a rule, before its closing brace."""
     for item in names.file.items:
         if isinstance(item, tree.RuleItem) and item.name.text == name:
-            end = names.bounds(item.span)[1] - 1
+            end = item.span.end - 1
             line = names.checked.text.rfind("\n", 0, end) + 1
             if names.checked.text[line:end].strip():
                 return TextChange(end, end, f"\n  {example}\n")

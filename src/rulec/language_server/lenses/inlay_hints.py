@@ -9,10 +9,9 @@ from lsprotocol import types as lsp
 from rulec.language_server.names.hover_texts import value_text
 from rulec.language_server.names.name_occurrences import DocumentNames
 from rulec.language_server.workspace.text_positions import TextPositions
-from rulec.rulebook.names.referenced_names import atoms_in, formulas_of, parts_of
+from rulec.rulebook.names.referenced_names import formulas_of, parts_of
 from rulec.syntax import tree
 from rulec.syntax.keywords import BINDS_NARROWLY, JOINS_ALIKE
-from rulec.vocabulary import Quantity
 
 
 def inlay_hints(
@@ -22,8 +21,7 @@ def inlay_hints(
     first, last = positions.offset(where.start), positions.offset(where.end)
     hints: list[lsp.InlayHint] = []
     for item in names.file.items:
-        start, end = names.bounds(item.span)
-        if start <= last and first <= end:
+        if item.span.start <= last and first <= item.span.end:
             for offset, label, tip in _in_item(item, names):
                 if first <= offset <= last:
                     position = positions.position(offset)
@@ -47,35 +45,31 @@ def _inherited(rule: tree.RuleItem, names: DocumentNames) -> Iterator[Hint]:
     entry = names.chain.names.constants.overlay.rules.get(rule.name.text)
     if not rule.override or entry is None:
         return
-    start = names.bounds(rule.span)[0]
     if rule.strength is None and entry.item.strength is not None:
         deed = "confirm" if rule.confirm else "override"
         yield (
-            start + len(deed),
+            rule.span.start + len(deed),
             f" {entry.item.strength}",
             "inherited, since this rule does not set it",
         )
-    end = names.bounds(rule.name.span)[1]
     if rule.level is None and entry.item.level is not None and not rule.variables:
-        yield end, f" in {entry.item.level.text}", "inherited level"
+        yield rule.name.span.end, f" in {entry.item.level.text}", "inherited level"
 
 
 def _in_formula(formula: tree.Formula, names: DocumentNames) -> Iterator[Hint]:
     if isinstance(formula, tree.Infix) and formula.operator not in JOINS_ALIKE | {"then"}:
-        yield from _narrow(formula.left, formula.operator, names)
+        yield from _narrow(formula.left, formula.operator)
     elif isinstance(formula, tree.Infix):
-        yield from _narrow(formula.left, formula.operator, names, unless=formula.right)
+        yield from _narrow(formula.left, formula.operator, unless=formula.right)
     if isinstance(formula, tree.Compare | tree.Arithmetic):
         yield from _units(formula, names)
-    for use in atoms_in(formula) if not parts_of(formula) else ():
-        yield from _value(use, names)
+    if isinstance(formula, tree.AtomUse):
+        yield from _value(formula, names)
     for part in parts_of(formula):
         yield from _in_formula(part, names)
 
 
-def _narrow(
-    left: tree.Formula, follows: str, names: DocumentNames, unless: tree.Formula | None = None
-) -> Iterator[Hint]:
+def _narrow(left: tree.Formula, follows: str, unless: tree.Formula | None = None) -> Iterator[Hint]:
     """Parentheses that show how little a temporal operator applies to: ``(never a) and b``."""
     while isinstance(left, tree.Infix) and not left.grouped:
         left = left.right
@@ -83,10 +77,9 @@ def _narrow(
     if isinstance(left, tree.Prefix) and left.operator in BINDS_NARROWLY and not left.grouped:
         if alike:
             return
-        start, end = names.bounds(left.span)
         why = f"`{left.operator}` binds tighter than `{follows}`: it applies to this part only"
-        yield start, "(", why
-        yield end, ")", why
+        yield left.span.start, "(", why
+        yield left.span.end, ")", why
 
 
 def _units(formula: tree.Compare | tree.Arithmetic, names: DocumentNames) -> Iterator[Hint]:
@@ -95,10 +88,10 @@ def _units(formula: tree.Compare | tree.Arithmetic, names: DocumentNames) -> Ite
     for number, other in (sides, sides[::-1]):
         if not isinstance(number, tree.NumberLiteral) or not isinstance(other, tree.AtomUse):
             continue
-        unit = _unit_of(other, names)
+        unit = names.chain.names.symbols.unit_meant(other.name.text)
         if not unit or unit == number.unit:
             continue
-        end = names.bounds(number.span)[1]
+        end = number.span.end
         if not number.unit:
             if number.text.strip("0.") == "":
                 yield end, f" {unit}", f"the unit of `{other.name.text}`"
@@ -110,15 +103,6 @@ def _units(formula: tree.Compare | tree.Arithmetic, names: DocumentNames) -> Ite
             yield end, f" = {amount:.6g} {unit}", f"in the unit of `{other.name.text}`"
 
 
-def _unit_of(use: tree.AtomUse, names: DocumentNames) -> str:
-    items, name = names.chain.names.symbols.items, use.name.text
-    for head in (name, *(name[:at] for at, letter in enumerate(name) if letter == "_")):
-        item = items.get(head)
-        if isinstance(item, Quantity):
-            return item.unit
-    return ""
-
-
 def _value(use: tree.AtomUse, names: DocumentNames) -> Iterator[Hint]:
     """The value of a parameter on the day whose law applies."""
     constants = names.chain.names.constants
@@ -127,4 +111,4 @@ def _value(use: tree.AtomUse, names: DocumentNames) -> Iterator[Hint]:
         return
     text = value_text(number)
     if len(text) <= 40:
-        yield names.bounds(use.name.span)[1], f" = {text}", f"on {constants.at}"
+        yield use.name.span.end, f" = {text}", f"on {constants.at}"

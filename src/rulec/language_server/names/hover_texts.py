@@ -16,7 +16,6 @@ from rulec.report.rulebooks.word_texts import (
     word_text,
 )
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
-from rulec.rulebook.names.referenced_names import formulas_of, parts_of
 from rulec.rulebook.overlay.rulebook_overlay import Value, in_force
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula, print_in_force, print_parameters
@@ -164,32 +163,10 @@ def value_text(number: NumberByCases) -> str:
 
 
 def _type_of(names: DocumentNames, symbol: NamedSymbol) -> str:
-    source, start = symbol.span.source, symbol.span.start
-    for item in (item for book in names.chain.books for item in book.items):
-        if item.span.source is source and item.span.start <= start < item.span.end:
-            for parameter in _parameters_in(item):
-                if parameter.name.span.start == start and parameter.type is not None:
-                    return parameter.type.text
-    return ""
-
-
-def _parameters_in(item: tree.Item) -> Iterator[tree.Parameter]:
-    match item:
-        case tree.RuleItem(variables=variables, examples=examples):
-            yield from variables
-            for example in examples:
-                yield from example.objects
-        case tree.DefineItem(parameters=parameters):
-            yield from parameters
-    for formula in formulas_of(item):
-        yield from _counted(formula)
-
-
-def _counted(formula: tree.Formula) -> Iterator[tree.Parameter]:
-    if isinstance(formula, tree.Aggregate):
-        yield formula.variable
-    for part in parts_of(formula):
-        yield from _counted(part)
+    nodes = (node for item in names.chain.items_at(symbol) for node in tree.nodes_in(item))
+    parameters = (node for node in nodes if isinstance(node, tree.Parameter))
+    types = (x.type for x in parameters if x.name.span.start == symbol.span.start)
+    return next((kind.text for kind in types if kind is not None), "")
 
 
 def _around(names: DocumentNames, level: str) -> tuple[list[str], list[str]]:

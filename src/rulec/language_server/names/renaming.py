@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from lsprotocol import types as lsp
@@ -14,6 +15,7 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.language_server.names.name_occurrences import (
     DocumentNames,
     NamedSymbol,
+    Occurrence,
     names_in_document,
 )
 from rulec.language_server.workspace.editor_workspace import (
@@ -67,10 +69,10 @@ def renamed(
     if name in RESERVED:
         raise RefusedRenamingError(f"`{name}` is a word of the language")
     changes: dict[str, list[TextChange]] = {}
-    for place in references_to(symbol, names, editor):
-        if place.listed:
-            continue
-        changes.setdefault(place.uri, []).append(TextChange(place.start, place.end, name))
+    for location, occurrence in references_to(symbol, names, editor):
+        if not occurrence.listed:
+            start, end = occurrence.span.start, occurrence.span.end
+            changes.setdefault(location.uri, []).append(TextChange(start, end, name))
     if symbol.kind == "rule":
         for uri, change in _in_topics(symbol, name, names, editor):
             changes.setdefault(uri, []).append(change)
@@ -120,24 +122,29 @@ def _in_topics(
         1
         for book in books_with(symbol, names, editor)
         for occurrence in book.all()
-        if book.is_same(occurrence.symbol, symbol, names) and not occurrence.listed
+        if occurrence.symbol.is_same(symbol) and not occurrence.listed
         if _heads_a_rule(book, occurrence.span.start, occurrence.span.end)
     )
     done: set[tuple[str, int]] = set()
     for book in books_with(symbol, names, editor):
-        longest = _longest_listed(symbol.name, book)
-        for file in book.chain.books:
-            uri = uri_of(file.span.source.name)
+        entries = [
+            node
+            for file in book.chain.books
+            for node in tree.nodes_in(file)
+            if isinstance(node, tree.TopicEntry)
+        ]
+        longest = _longest_listed(symbol.name, entries)
+        for entry in entries:
+            uri = uri_of(entry.span.source.name)
             path = path_of(uri)
             if path is not None and editor.is_read_only(path):
                 continue
-            for entry in _topic_entries(file):
-                if not any(rule.text == longest for rule in entry.rules):
-                    continue
-                change = _in_topic(entry, symbol.name, name, book, others)
-                if change is not None and (uri, change.start) not in done:
-                    done.add((uri, change.start))
-                    yield uri, change
+            if not any(rule.text == longest for rule in entry.rules):
+                continue
+            change = _in_topic(entry, symbol.name, name, others)
+            if change is not None and (uri, change.start) not in done:
+                done.add((uri, change.start))
+                yield uri, change
 
 
 def _heads_a_rule(book: DocumentNames, start: int, end: int) -> bool:
@@ -145,34 +152,26 @@ def _heads_a_rule(book: DocumentNames, start: int, end: int) -> bool:
     return end > start and before.endswith("rule")
 
 
-def _topic_entries(file: tree.File) -> Iterator[tree.TopicEntry]:
-    for item in file.items:
-        if isinstance(item, tree.TopicsItem):
-            yield from item.entries
-
-
-def _longest_listed(rule: str, book: DocumentNames) -> str:
+def _longest_listed(rule: str, entries: Iterable[tree.TopicEntry]) -> str:
     """The longest prefix of a rule's name that a topic lists; it alone determines its topics."""
-    files = book.chain.books
-    entries = (entry for file in files for entry in _topic_entries(file))
     listed = (name.text for entry in entries for name in entry.rules)
-    return max((name for name in listed if f"{rule}_".startswith(f"{name}_")), key=len, default="")
+    return max((name for name in listed if _is_of(rule, name)), key=len, default="")
+
+
+def _is_of(rule: str, listed: str) -> bool:
+    return f"{rule}_".startswith(f"{listed}_")
 
 
 def _in_topic(
-    entry: tree.TopicEntry, old: str, new: str, book: DocumentNames, others: Mapping[str, int]
+    entry: tree.TopicEntry, old: str, new: str, others: Mapping[str, int]
 ) -> TextChange | None:
     """The change of a topic's rules: the name is replaced, or appended."""
-
-    def is_of(rule: str, listed: tree.Name) -> bool:
-        return f"{rule}_".startswith(f"{listed.text}_")
-
-    listed = [name for name in entry.rules if is_of(old, name)]
-    if not listed or any(is_of(new, name) for name in entry.rules):
+    listed = [name for name in entry.rules if _is_of(old, name.text)]
+    if not listed or any(_is_of(new, name.text) for name in entry.rules):
         return None
     longest = max(listed, key=lambda name: len(name.text))
-    start, end = book.bounds(longest.span)
-    still = any(count > 0 and is_of(rule, longest) for rule, count in others.items())
+    start, end = longest.span.start, longest.span.end
+    still = any(count > 0 and _is_of(rule, longest.text) for rule, count in others.items())
     if longest.text == old and not still:
         return TextChange(start, end, new)
     return TextChange(end, end, f", {new}")
@@ -240,7 +239,7 @@ def _meaning(
     checked: CheckedDocument, symbol: NamedSymbol, name: str
 ) -> tuple[dict[str, Rule], object] | None:
     """The rules and their order, with the old name replaced by the new one."""
-    book = None if checked.resolved is None else checked.resolved.rulebook
+    book = checked.resolved.rulebook
     if book is None:
         return None
 
@@ -262,37 +261,30 @@ def _meaning(
 
 def workspace_edit(changes: Changes, editor: EditorWorkspace) -> lsp.WorkspaceEdit:
     """The changes in the form that editors expect."""
-    edits: dict[str, list[lsp.TextEdit]] = {}
-    for uri, parts in changes.items():
-        document = editor.document(uri)
-        positions = editor.positions(document.text if document else "")
-        edits[uri] = [
-            lsp.TextEdit(positions.range(change.start, change.end), change.text) for change in parts
-        ]
-    return lsp.WorkspaceEdit(changes=edits)
+    documents = ((uri, editor.document(uri), parts) for uri, parts in changes.items())
+    return lsp.WorkspaceEdit(
+        changes={
+            uri: text_edits(parts, document.text if document else "", editor)
+            for uri, document, parts in documents
+        }
+    )
 
 
-def placeholder(
-    names: DocumentNames, offset: int, editor: EditorWorkspace
-) -> tuple[NamedSymbol, int, int]:
-    """The symbol to be renamed at a character, and its bounds. Raises RefusedRenamingError."""
+def text_edits(
+    changes: Iterable[TextChange], text: str, editor: EditorWorkspace
+) -> list[lsp.TextEdit]:
+    """The changes of a text in the form that editors expect."""
+    positions = editor.positions(text)
+    return [lsp.TextEdit(positions.range(each.start, each.end), each.text) for each in changes]
+
+
+def to_rename(names: DocumentNames, offset: int, editor: EditorWorkspace) -> Occurrence:
+    """The name at a character, which can be renamed. Raises RefusedRenamingError."""
     occurrence = names.at(offset)
     if occurrence is None:
         raise RefusedRenamingError("there is no name here to rename")
     refuse_in_general(occurrence.symbol, editor)
-    return occurrence.symbol, *names.bounds(occurrence.span)
-
-
-@dataclass(frozen=True, slots=True)
-class NamePlace:
-    """A name in some file, by character offsets; ``listed`` if it is in a topic's list."""
-
-    uri: str
-    start: int
-    end: int
-    location: lsp.Location
-    declares: bool
-    listed: bool
+    return occurrence
 
 
 def declaration_of(
@@ -301,22 +293,23 @@ def declaration_of(
     """Where a symbol is declared."""
     span = symbol.span
     positions = editor.positions(names.text_of(span))
-    return lsp.Location(uri_of(span.source.name), positions.range(*names.bounds(span)))
+    return lsp.Location(uri_of(span.source.name), positions.of(span))
 
 
 def references_to(
     symbol: NamedSymbol, names: DocumentNames, editor: EditorWorkspace
-) -> list[NamePlace]:
+) -> list[tuple[lsp.Location, Occurrence]]:
     """All places of a symbol's name."""
-    places: dict[tuple[str, int], NamePlace] = {}
+    places: dict[tuple[str, int], tuple[lsp.Location, Occurrence]] = {}
     for book in books_with(symbol, names, editor):
-        for place in _in_document(symbol, names, book, editor):
-            places.setdefault((place.uri, place.start), place)
+        uri = uri_of(book.checked.path or book.checked.name)
+        positions = editor.positions(book.checked.text)
+        for occurrence in book.all():
+            if occurrence.symbol.is_same(symbol):
+                location = lsp.Location(uri, positions.of(occurrence.span))
+                places.setdefault((uri, occurrence.span.start), (location, occurrence))
     declared = uri_of(symbol.span.source.name)
-    return sorted(
-        places.values(),
-        key=lambda name_place: (name_place.uri != declared, name_place.uri, name_place.start),
-    )
+    return [places[place] for place in sorted(places, key=lambda at: (at[0] != declared, at))]
 
 
 def books_with(
@@ -339,33 +332,11 @@ def books_with(
             continue
         if not word.search(document.text):
             continue
-        try:
-            other = names_in_document(editor.check(document))
-        except RulecError:
-            continue
-        if other is not None:
-            yield other
+        with suppress(RulecError):
+            yield names_in_document(editor.check(document))
 
 
 def _owner(variable: NamedSymbol, names: DocumentNames) -> str:
     """The rule that a variable belongs to; empty for a definition's variable."""
-    for item in (item for book in names.chain.books for item in book.items):
-        span = item.span
-        here = span.source is variable.span.source and span.start <= variable.span.start < span.end
-        if here and isinstance(item, tree.RuleItem):
-            return item.name.text
-    return ""
-
-
-def _in_document(
-    symbol: NamedSymbol, origin: DocumentNames, names: DocumentNames, editor: EditorWorkspace
-) -> Iterator[NamePlace]:
-    uri = uri_of(names.checked.path or names.checked.name)
-    positions = editor.positions(names.checked.text)
-    for occurrence in names.all():
-        if names.is_same(occurrence.symbol, symbol, origin):
-            start, end = names.bounds(occurrence.span)
-            location = lsp.Location(uri, positions.range(start, end))
-            yield NamePlace(
-                uri, start, end, location, declares=occurrence.declares, listed=occurrence.listed
-            )
+    rules = (item for item in names.chain.items_at(variable) if isinstance(item, tree.RuleItem))
+    return next((rule.name.text for rule in rules), "")

@@ -15,49 +15,40 @@ from rulec.cancellation import step
 from rulec.diagnostics import Diagnostic, RulecError, Source
 from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.resources import rulebooks_folder
-from rulec.rulebook.allowances import judged_allowances
 from rulec.rulebook.files.open_documents import shown
 from rulec.rulebook.files.search_path import read_bytes
 from rulec.rulebook.files.source_walk import sources_below
-from rulec.rulebook.loader import RulebookFile, Trees, day_of, in_order, reported, trees_of
+from rulec.rulebook.loader import (
+    ResolvedTrees,
+    RulebookFile,
+    Trees,
+    resolved,
+    trees_of,
+    vocabulary_findings,
+)
 from rulec.rulebook.overlay.rulebook_overlay import RuleEntry
 from rulec.rulebook.resolve import (
     BookNames,
     TranslatedRule,
-    is_whole,
     names_of,
-    resolve_vocabulary,
     translated,
-    with_rules,
 )
-from rulec.rulebook.rulebook_model import Rulebook
 from rulec.settings import search_path
-from rulec.syntax import decode, parse, tree
-
-
-@dataclass(frozen=True, slots=True)
-class ResolvedTrees:
-    """Trees, the names their formulas can use, and the rulebook if it has no error."""
-
-    trees: Trees
-    names: BookNames
-    rulebook: Rulebook | None
+from rulec.syntax import decode, parse
 
 
 @dataclass(frozen=True, slots=True)
 class CheckedDocument:
     """A document with its parse result; findings refer to places in its text.
 
-    ``resolved`` has its trees and names; None if the text could not be parsed at all. ``text`` is
-    that of the document, of which ``source`` may lack rules.
+    ``text`` is that of the document, of which ``source`` may lack rules.
     """
 
     name: str
     path: Path | None
     text: str
     source: Source
-    file: tree.File
-    resolved: ResolvedTrees | None
+    resolved: ResolvedTrees
     findings: tuple[Diagnostic, ...]
 
 
@@ -166,47 +157,32 @@ class EditorWorkspace:
 
         Raises RulecError for wrong settings.
         """
-        source = Source(document.name, document.text)
         with self.as_shown():
-            resolved, findings, file = self._checked(document, source)
+            resolved = self._resolved(document)
+        source = resolved.trees.books[-1].span.source
         document.checked = CheckedDocument(
             document.name,
             document.path,
             document.text,
             source,
-            file,
             resolved=resolved,
-            findings=findings,
+            findings=resolved.findings,
         )
         return document.checked
 
-    def _checked(
-        self, document: Document, source: Source
-    ) -> tuple[ResolvedTrees | None, tuple[Diagnostic, ...], tree.File]:
-        path, (file, mistakes) = document.path, parse(source)
+    def _resolved(self, document: Document) -> ResolvedTrees:
+        path, source = document.path, Source(document.name, document.text)
+        file, mistakes = parse(source)
         folders = search_path(None if path is None else path.parent)
         if file.kind == "vocabulary":
-            _, meanings = resolve_vocabulary(file)
             trees = Trees(
                 document.name, (file,), vocabularies=(), sources=(), mistakes=(), dependencies=()
             )
-            findings = in_order(document.name, judged_allowances([*mistakes, *meanings], source))
-            return ResolvedTrees(trees, names_of((file,), at=""), None), findings, file
+            findings = vocabulary_findings(file, document.name, mistakes)
+            return ResolvedTrees(trees, names_of((file,), at=""), None, findings)
         data = document.text.encode("utf-8", "surrogatepass")
-        try:
-            trees = trees_of(RulebookFile(source, data, path, folders), file, ())
-        except RulecError as error:
-            return None, error.diagnostics, file
-        names = names_of(
-            trees.books, trees.vocabularies, opaque=trees.dependencies is None, at=day_of(trees)
-        )
-        whole = trees.dependencies is not None
-        whole = whole and all(map(is_whole, (*trees.vocabularies, *trees.books)))
-        rulebook, meanings = with_rules(trees.books, names, trees.sources, _translated, whole=whole)
-        findings = reported(trees, [*mistakes, *trees.mistakes, *meanings], source)
-        if any(finding.severity == "error" for finding in findings):
-            rulebook = None
-        return ResolvedTrees(trees, names, rulebook), findings, file
+        book = RulebookFile(source, data, path, folders)
+        return resolved(trees_of(book, file, mistakes), translate=_translated)
 
     def positions(self, text: str) -> TextPositions:
         """The positions of a text as this editor counts them."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from lsprotocol import types as lsp
 
-from rulec.diagnostics import SourceLocation
+from rulec.diagnostics import SourceLocation, Span
 
 _LINE_END = re.compile(r"\r\n|\r|\n")
 
@@ -79,6 +79,10 @@ class TextPositions:
     def range(self, start: int, end: int) -> lsp.Range:
         """The range between two character offsets."""
         return lsp.Range(self.position(start), self.position(max(start, end)))
+
+    def of(self, span: Span) -> lsp.Range:
+        """The range of a span of the text."""
+        return self.range(span.start, span.end)
 
     def offset_of(self, line: int | None, column: int | None) -> int:
         """The character offset of a line and a column of a ``SourceLocation``."""

@@ -18,17 +18,16 @@ class PieceAtCursor:
     """The piece of a text up to the name at the cursor, which begins at character ``start``.
 
     ``tokens`` are the piece's tokens, ``kind`` is its syntactic kind; ``accepted`` are the
-    grammar's terminals that can follow. ``in_rule`` and ``in_vocabulary``: it is inside their
-    braces. ``heads`` are the tokens of the heads that it is under: of its rule, and its example.
+    grammar's terminals that can follow. ``in_vocabulary``: it is inside its braces. ``heads`` are
+    the tokens of the heads that it is under: of its rule, and its example.
     """
 
     start: int
     kind: Start | None
     tokens: tuple[Token, ...]
     accepted: frozenset[str]
-    in_rule: bool
     in_vocabulary: bool
-    heads: tuple[Token, ...] = ()
+    heads: tuple[Token, ...]
 
     def text(self, back: int = 1) -> str:
         """The text of a token, counted back from the cursor; empty before the piece."""
@@ -56,19 +55,24 @@ def piece_at(names: DocumentNames, offset: int) -> PieceAtCursor | None:
         return None
     if tokens and tokens[-1].kind in ("unterminated", "quoted"):
         return None
-    in_vocabulary = names.file.kind == "vocabulary" and bool(tokens)
     parts = list(FileSplitter(Source("", before), tokens).split()) if tokens else []
     last = parts[-1] if parts else None
+    kind: Start | None = "item"
+    piece, heads = last, tuple[Piece, ...]()
     if isinstance(last, RulePieces):
-        closed = last.body or tokens[last.last - 1].text in ("{", "}")
-        if tokens[last.last - 1].text == "}" and _is_balanced(tokens[last.first : last.last]):
-            return _none_yet(start, in_vocabulary=in_vocabulary)
-        if not closed:
-            return _of("rule_head", last.head, start, (before, tokens))
-        return _in_rule(last, start, (before, tokens))
-    if last is None or tokens[-1].text == "{":
-        return _none_yet(start, in_vocabulary=in_vocabulary)
-    return _of("item", last, start, (before, tokens), in_vocabulary=in_vocabulary)
+        kind, piece, heads = _in_rule(last, tokens)
+    elif last is None or tokens[-1].text == "{":
+        kind, piece = None, None
+    inside: list[Token] = []
+    accepted = frozenset[str]()
+    if piece is not None and kind is not None:
+        inside = _tokens_of(piece, tokens)
+        accepted = accepted_after(kind, before[inside[0].start :] if inside else "")
+    above = (token for head in heads for token in _tokens_of(head, tokens))
+    in_vocabulary = names.file.kind == "vocabulary" and bool(tokens)
+    return PieceAtCursor(
+        start, kind, tuple(inside), accepted, in_vocabulary=in_vocabulary, heads=tuple(above)
+    )
 
 
 def _is_balanced(tokens: list[Token]) -> bool:
@@ -76,66 +80,25 @@ def _is_balanced(tokens: list[Token]) -> bool:
     return signs.count("{") == signs.count("}")
 
 
-def _in_rule(rule: RulePieces, start: int, read: tuple[str, list[Token]]) -> PieceAtCursor:
+def _in_rule(
+    rule: RulePieces, tokens: list[Token]
+) -> tuple[Start | None, Piece | None, tuple[Piece, ...]]:
+    """What is being written at the end of a rule: its kind, what there is of it, and its heads."""
+    closing = tokens[rule.last - 1].text
+    if closing == "}" and _is_balanced(tokens[rule.first : rule.last]):
+        return None, None, ()
+    if not rule.body and closing not in ("{", "}"):
+        return "rule_head", rule.head, ()
     part = rule.body[-1] if rule.body else None
-    ended = read[1][-1].text == "}"
-    heads = _inside(rule.head, read[1])
-    if part is None or (ended and _is_balanced(_tokens_of(part, read[1]))):
-        return _none_yet(start, "clause", in_rule=True)
-    if isinstance(part, ExamplePieces):
-        if part.states:
-            heads += _inside(part.head, read[1])
-            return _of("state", part.states[-1], start, read, in_rule=True, heads=heads)
-        return _of("example_head", part.head, start, read, in_rule=True, heads=heads)
-    return _of("clause", part, start, read, in_rule=True, heads=heads)
+    if part is None or (tokens[-1].text == "}" and _is_balanced(_tokens_of(part, tokens))):
+        return "clause", None, ()
+    if isinstance(part, Piece):
+        return "clause", part, (rule.head,)
+    if part.states:
+        return "state", part.states[-1], (rule.head, part.head)
+    return "example_head", part.head, (rule.head,)
 
 
-def _inside(piece: Piece, tokens: list[Token]) -> tuple[Token, ...]:
-    return tuple(tokens[piece.first : piece.last])
-
-
-def _none_yet(
-    start: int,
-    kind: Start | None = None,
-    *,
-    in_rule: bool = False,
-    in_vocabulary: bool = False,
-) -> PieceAtCursor:
-    """A place where a piece may begin, with at most its first word written."""
-    return PieceAtCursor(
-        start,
-        kind,
-        tokens=(),
-        accepted=frozenset(),
-        in_rule=in_rule,
-        in_vocabulary=in_vocabulary,
-    )
-
-
-def _tokens_of(part: Piece | ExamplePieces, tokens: list[Token]) -> list[Token]:
+def _tokens_of(part: Piece | ExamplePieces | RulePieces, tokens: list[Token]) -> list[Token]:
     first = part.head.first if isinstance(part, ExamplePieces) else part.first
     return tokens[first : part.last]
-
-
-def _of(
-    kind: Start,
-    piece: Piece,
-    start: int,
-    read: tuple[str, list[Token]],
-    *,
-    in_rule: bool = False,
-    in_vocabulary: bool = False,
-    heads: tuple[Token, ...] = (),
-) -> PieceAtCursor:
-    before, tokens = read
-    inside = _inside(piece, tokens)
-    text = before[inside[0].start :] if inside else ""
-    return PieceAtCursor(
-        start,
-        kind,
-        tokens=inside,
-        accepted=accepted_after(kind, text),
-        in_rule=in_rule,
-        in_vocabulary=in_vocabulary,
-        heads=heads,
-    )

@@ -12,7 +12,7 @@ from lsprotocol import types as lsp
 
 from rulec.diagnostics import Diagnostic, Fix, RulecError, SourceLocation
 from rulec.diagnostics.ways_out import leaving_out, short
-from rulec.language_server.names.renaming import TextChange, changed_text
+from rulec.language_server.names.renaming import TextChange, changed_text, text_edits
 from rulec.language_server.workspace.editor_workspace import (
     CheckedDocument,
     Document,
@@ -167,11 +167,7 @@ def _errors(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
 
 def code_action(fix: QuickFix, uri: str, text: str, editor: EditorWorkspace) -> lsp.CodeAction:
     """A quick fix as a code action of the protocol."""
-    positions = editor.positions(text)
-    edits = [
-        lsp.TextEdit(positions.range(change.start, change.end), change.text)
-        for change in fix.changes
-    ]
+    edits = text_edits(fix.changes, text, editor)
     return lsp.CodeAction(
         fix.title,
         kind=lsp.CodeActionKind.QuickFix,

@@ -16,7 +16,7 @@ from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.rulebook.names.doc_comments import description
 from rulec.settings import search_path
 from rulec.syntax import tree
-from rulec.syntax.keywords import CLAUSE_WORDS
+from rulec.syntax.keywords import CLAUSE_WORDS, DECLARATION_WORDS
 from rulec.syntax.messages.parse_context import spelling
 from rulec.syntax.tree_printer import print_parameter
 from rulec.vocabulary import Quantity
@@ -30,7 +30,6 @@ _BEGINNINGS = (
     *("quantity", "type", "fact", "constant", "presumed", "hard rule", "soft rule"),
     *("override rule", "confirm rule", "drop rule", "soften rule", "silent on"),
 )
-_IN_VOCABULARY = ("type", "signal", "quantity", "fact", "constant", "presumed")
 _CLAUSES = tuple(sorted((CLAUSE_WORDS - {"also"}) | {"also unless", "in force"}))
 _KINDS = lsp.CompletionItemKind
 
@@ -61,7 +60,7 @@ def _all(
     piece: PieceAtCursor, names: DocumentNames, offset: int, editor: EditorWorkspace
 ) -> Iterator[Ranked]:
     if piece.kind is None:
-        words = _IN_VOCABULARY if piece.in_vocabulary else _BEGINNINGS
+        words = DECLARATION_WORDS if piece.in_vocabulary else _BEGINNINGS
         yield from _keywords(words, 0)
         return
     if piece.kind == "clause" and not piece.tokens:
@@ -73,10 +72,10 @@ def _all(
     yield from _keywords([word for word in possible if word[0].isalpha()], 5)
     if "UNIT" in piece.accepted:
         yield from _units(names)
-    if "$END" in piece.accepted and piece.in_rule and piece.kind == "clause":
+    if "$END" in piece.accepted and piece.kind == "clause":
         yield from _keywords(_CLAUSES, 6)
     elif "$END" in piece.accepted and piece.kind == "item":
-        yield from _keywords(_IN_VOCABULARY if piece.in_vocabulary else _BEGINNINGS, 7)
+        yield from _keywords(DECLARATION_WORDS if piece.in_vocabulary else _BEGINNINGS, 7)
 
 
 def _keywords(words: Iterable[str], rank: int) -> Iterator[Ranked]:
@@ -165,8 +164,7 @@ def _scope(names: DocumentNames, piece: PieceAtCursor, offset: int) -> dict[str,
             for parameter in item.variables or inherited:
                 scope[parameter.name.text] = parameter.type.text if parameter.type else ""
             for example in item.examples:
-                start, end = names.bounds(example.span)
-                if start <= offset <= end:
+                if example.span.start <= offset <= example.span.end:
                     scope |= {o.name.text: o.type.text for o in example.objects if o.type}
         case tree.DefineItem(parameters=parameters):
             scope = {x.name.text: x.type.text if x.type else "" for x in parameters}
@@ -316,12 +314,8 @@ def dimension_of(name: str, names: DocumentNames) -> Dimension | None:
     known = constants.numbers.get(name)
     if known is not None:
         return known.dimension
-    for head in (name, *(name[:at] for at, letter in enumerate(name) if letter == "_")):
-        item = symbols.items.get(head)
-        if isinstance(item, Quantity):
-            unit = symbols.unit(item.unit)
-            return None if unit is None else unit.dimension
-    return None
+    unit = symbols.unit(symbols.unit_meant(name))
+    return None if unit is None else unit.dimension
 
 
 def _units(names: DocumentNames) -> Iterator[Ranked]:

@@ -6,8 +6,6 @@ import re
 
 from rulec.logic.formula import BinaryOperator, UnaryOperator
 from rulec.logic.sentences.language import (
-    AdverbWords,
-    BinaryWords,
     Language,
     SpanWords,
     TypeWords,
@@ -87,67 +85,31 @@ ENGLISH = Language(
     counts_never="it never counts, for its condition is false as options are set",
     not_so="it is not the case that",
     adverbs={
-        UnaryOperator.ALWAYS: AdverbWords(
-            "from that time on always", "at all times", "at all times {}"
-        ),
-        UnaryOperator.NEVER: AdverbWords(
-            "from that time on it never happens that",
-            "it never happens that",
-            "at no time {} does it happen that",
-        ),
-        UnaryOperator.EVENTUALLY: AdverbWords(
-            "at that time or later", "at some time", "at some time {}"
-        ),
-        UnaryOperator.NEXT: AdverbWords("at the next moment", "at the next moment", "{}"),
-        UnaryOperator.WEAK_NEXT: AdverbWords(
-            "at the next moment, if there is one,",
-            "at the next moment, if there is one,",
-            "{}, if the trace lasts that long,",
-        ),
-        UnaryOperator.ONCE: AdverbWords(
-            "at that time or earlier,", "at the start or earlier,", "at some time {},"
-        ),
-        UnaryOperator.HISTORICALLY: AdverbWords(
-            "up to that time always", "up to the start always", "at all times {},"
-        ),
-        UnaryOperator.PREVIOUSLY: AdverbWords("one moment earlier,", "one moment earlier,", "{},"),
-        UnaryOperator.WEAK_PREVIOUSLY: AdverbWords(
-            "one moment earlier, if there was one,",
-            "one moment earlier, if there was one,",
-            "{}, if the trace had begun,",
-        ),
+        UnaryOperator.ALWAYS: "[at all times {}|at all times|from that time on always]",
+        UnaryOperator.NEVER: "[at no time {} does it happen|it never happens|from that time on it "
+        "never happens] that",
+        UnaryOperator.EVENTUALLY: "at [some time {}|some time|that time or later]",
+        UnaryOperator.NEXT: "[{}|at the next moment]",
+        UnaryOperator.WEAK_NEXT: "[{}, if the trace lasts that long|at the next moment, if there "
+        "is one],",
+        UnaryOperator.ONCE: "at [some time {}|the start or earlier|that time or earlier],",
+        UnaryOperator.HISTORICALLY: "[at all times {},|up to the start always|up to that time "
+        "always]",
+        UnaryOperator.PREVIOUSLY: "[{}|one moment earlier],",
+        UnaryOperator.WEAK_PREVIOUSLY: "[{}, if the trace had begun|one moment earlier, if there "
+        "was one],",
     },
     binary={
-        BinaryOperator.UNTIL: BinaryWords(
-            "{left} until, sooner or later, {right}",
-            "{left} until, at some time {span}, {right}",
-            "{left} until, at some time {span}, {right}",
-        ),
-        BinaryOperator.WEAK_UNTIL: BinaryWords(
-            # Of what does not hold, `for ever` alone would say that it may hold some day.
-            "{left}, and this is so for ever, or only until, at some time, {right}",
-            "{left}, and this is so at all times {first}, or only until, at some time {span}, "
-            "{right}",
-            "{left}, and this is so for ever, or only until, at some time {span}, {right}",
-        ),
-        BinaryOperator.RELEASE: BinaryWords(
-            "unless released before by a moment at which {left}, at all times {right}",
-            "unless released before by a moment at which {left}, at all times {span} {right}",
-            "unless released before by a moment at which {left}, at all times {span} {right}",
-        ),
-        BinaryOperator.STRONG_RELEASE: BinaryWords(
-            "unless released before by a moment, which must come, at which {left}, at all times "
-            "{right}",
-            "unless released before by a moment, which must come {first}, at which {left}, at all "
-            "times {span} {right}",
-            "unless released before by a moment, which must come, at which {left}, at all times "
-            "{span} {right}",
-        ),
-        BinaryOperator.SINCE: BinaryWords(
-            "{left}, and this has been so ever since {right}",
-            "{left}, and this has been so ever since a moment {span} at which {right}",
-            "{left}, and this has been so ever since a moment {span} at which {right}",
-        ),
+        BinaryOperator.UNTIL: "{left} until, [sooner or later|at some time {span}], {right}",
+        # Of what does not hold, `for ever` alone would say that it may hold some day.
+        BinaryOperator.WEAK_UNTIL: "{left}, and this is so [for ever|at all times {first}|for "
+        "ever], or only until, at some time[| {span}], {right}",
+        BinaryOperator.RELEASE: "unless released before by a moment at which {left}, at all "
+        "times[| {span}] {right}",
+        BinaryOperator.STRONG_RELEASE: "unless released before by a moment, which must come[| "
+        "{first}|], at which {left}, at all times[| {span}] {right}",
+        BinaryOperator.SINCE: "{left}, and this has been so ever since [|a moment {span} at which "
+        "]{right}",
     },
     iff="{} if and only if {}",
     xor="either {} or {}, but not both",

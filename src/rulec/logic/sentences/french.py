@@ -6,8 +6,6 @@ import re
 
 from rulec.logic.formula import BinaryOperator, UnaryOperator
 from rulec.logic.sentences.language import (
-    AdverbWords,
-    BinaryWords,
     Language,
     SpanWords,
     TypeWords,
@@ -87,70 +85,31 @@ FRENCH = Language(
     counts_never="cela ne compte jamais, car la condition est fausse avec ces options",
     not_so="ceci n'est pas le cas :",
     adverbs={
-        UnaryOperator.ALWAYS: AdverbWords(
-            "à partir de là, toujours :", "à tout moment :", "à tout moment {} :"
-        ),
-        UnaryOperator.NEVER: AdverbWords(
-            "à partir de là, jamais ceci :", "jamais ceci :", "à aucun moment {}, ceci :"
-        ),
-        UnaryOperator.EVENTUALLY: AdverbWords(
-            "à ce moment ou plus tard :", "à un moment :", "à un moment {} :"
-        ),
-        UnaryOperator.NEXT: AdverbWords("à l'instant suivant :", "à l'instant suivant :", "{} :"),
-        UnaryOperator.WEAK_NEXT: AdverbWords(
-            "à l'instant suivant, s'il y en a un :",
-            "à l'instant suivant, s'il y en a un :",
-            "{}, si le déroulement dure jusque-là :",
-        ),
-        UnaryOperator.ONCE: AdverbWords(
-            "à ce moment ou avant :", "au début ou avant :", "à un moment {} :"
-        ),
-        UnaryOperator.HISTORICALLY: AdverbWords(
-            "jusqu'à ce moment, toujours :", "jusqu'au début, toujours :", "à tout moment {} :"
-        ),
-        UnaryOperator.PREVIOUSLY: AdverbWords(
-            "à l'instant précédent :", "à l'instant précédent :", "{} :"
-        ),
-        UnaryOperator.WEAK_PREVIOUSLY: AdverbWords(
-            "à l'instant précédent, s'il y en avait un :",
-            "à l'instant précédent, s'il y en avait un :",
-            "{}, si le déroulement avait commencé :",
-        ),
+        UnaryOperator.ALWAYS: "à [tout moment {}|tout moment|partir de là, toujours] :",
+        UnaryOperator.NEVER: "[à aucun moment {},|jamais|à partir de là, jamais] ceci :",
+        UnaryOperator.EVENTUALLY: "à [un moment {}|un moment|ce moment ou plus tard] :",
+        UnaryOperator.NEXT: "[{}|à l'instant suivant] :",
+        UnaryOperator.WEAK_NEXT: "[{}, si le déroulement dure jusque-là|à l'instant suivant, s'il "
+        "y en a un] :",
+        UnaryOperator.ONCE: "[à un moment {}|au début ou avant|à ce moment ou avant] :",
+        UnaryOperator.HISTORICALLY: "[à tout moment {}|jusqu'au début, toujours|jusqu'à ce "
+        "moment, toujours] :",
+        UnaryOperator.PREVIOUSLY: "[{}|à l'instant précédent] :",
+        UnaryOperator.WEAK_PREVIOUSLY: "[{}, si le déroulement avait commencé|à l'instant "
+        "précédent, s'il y en avait un] :",
     },
     binary={
-        BinaryOperator.UNTIL: BinaryWords(
-            "ceci : {left}, jusqu'à ce que, tôt ou tard, ceci : {right}",
-            "ceci : {left}, jusqu'à ce que, à un moment {span}, ceci : {right}",
-            "ceci : {left}, jusqu'à ce que, à un moment {span}, ceci : {right}",
-        ),
-        BinaryOperator.WEAK_UNTIL: BinaryWords(
-            "ceci : {left}, et cela pour toujours, ou seulement jusqu'à ce que, à un moment, "
-            "ceci : {right}",
-            "ceci : {left}, et cela à tout moment {first}, ou seulement jusqu'à ce que, à un "
-            "moment {span}, ceci : {right}",
-            "ceci : {left}, et cela pour toujours, ou seulement jusqu'à ce que, à un moment "
-            "{span}, ceci : {right}",
-        ),
-        BinaryOperator.RELEASE: BinaryWords(
-            "sauf libération préalable par un instant avec ceci : {left}, à tout moment : {right}",
-            "sauf libération préalable par un instant avec ceci : {left}, à tout moment {span} : "
-            "{right}",
-            "sauf libération préalable par un instant avec ceci : {left}, à tout moment {span} : "
-            "{right}",
-        ),
-        BinaryOperator.STRONG_RELEASE: BinaryWords(
-            "sauf libération préalable par un instant, qui doit venir, avec ceci : {left}, à tout "
-            "moment : {right}",
-            "sauf libération préalable par un instant, qui doit venir {first}, avec ceci : "
-            "{left}, à tout moment {span} : {right}",
-            "sauf libération préalable par un instant, qui doit venir, avec ceci : {left}, à tout "
-            "moment {span} : {right}",
-        ),
-        BinaryOperator.SINCE: BinaryWords(
-            "ceci : {left}, et cela depuis que ceci : {right}",
-            "ceci : {left}, et cela depuis un instant {span} où ceci : {right}",
-            "ceci : {left}, et cela depuis un instant {span} où ceci : {right}",
-        ),
+        BinaryOperator.UNTIL: "ceci : {left}, jusqu'à ce que, [tôt ou tard|à un moment {span}], "
+        "ceci : {right}",
+        BinaryOperator.WEAK_UNTIL: "ceci : {left}, et cela [pour toujours|à tout moment "
+        "{first}|pour toujours], ou seulement jusqu'à ce que, à un moment[| {span}], ceci : "
+        "{right}",
+        BinaryOperator.RELEASE: "sauf libération préalable par un instant avec ceci : {left}, à "
+        "tout moment[| {span}] : {right}",
+        BinaryOperator.STRONG_RELEASE: "sauf libération préalable par un instant, qui doit "
+        "venir[,| {first},|,] avec ceci : {left}, à tout moment[| {span}] : {right}",
+        BinaryOperator.SINCE: "ceci : {left}, et cela depuis [que|un instant {span} où] ceci : "
+        "{right}",
     },
     iff="ceci : {}, si et seulement si ceci : {}",
     xor="ou bien ceci : {}, ou bien ceci : {}, mais pas les deux",

@@ -6,8 +6,6 @@ import re
 
 from rulec.logic.formula import BinaryOperator, UnaryOperator
 from rulec.logic.sentences.language import (
-    AdverbWords,
-    BinaryWords,
     Language,
     SpanWords,
     TypeWords,
@@ -84,71 +82,31 @@ GERMAN = Language(
     counts_never="das zählt nie, denn so, wie Optionen gesetzt sind, ist die Bedingung falsch",
     not_so="Folgendes gilt nicht:",
     adverbs={
-        UnaryOperator.ALWAYS: AdverbWords(
-            "von da an gilt immer:", "immer gilt:", "zu jeder Zeit {} gilt:"
-        ),
-        UnaryOperator.NEVER: AdverbWords(
-            "von da an kommt nie vor:", "nie kommt vor:", "zu keiner Zeit {} kommt vor:"
-        ),
-        UnaryOperator.EVENTUALLY: AdverbWords(
-            "dann oder später gilt:", "irgendwann gilt:", "irgendwann {} gilt:"
-        ),
-        UnaryOperator.NEXT: AdverbWords(
-            "im nächsten Augenblick gilt:", "im nächsten Augenblick gilt:", "{} gilt:"
-        ),
-        UnaryOperator.WEAK_NEXT: AdverbWords(
-            "im nächsten Augenblick, falls es ihn gibt, gilt:",
-            "im nächsten Augenblick, falls es ihn gibt, gilt:",
-            "{}, falls der Ablauf so lange dauert, gilt:",
-        ),
-        UnaryOperator.ONCE: AdverbWords(
-            "dann oder vorher galt:", "am Beginn oder vorher galt:", "irgendwann {} galt:"
-        ),
-        UnaryOperator.HISTORICALLY: AdverbWords(
-            "bis dahin galt immer:", "bis zum Beginn galt immer:", "zu jeder Zeit {} galt:"
-        ),
-        UnaryOperator.PREVIOUSLY: AdverbWords(
-            "im Augenblick davor galt:", "im Augenblick davor galt:", "{} galt:"
-        ),
-        UnaryOperator.WEAK_PREVIOUSLY: AdverbWords(
-            "im Augenblick davor, falls es ihn gab, galt:",
-            "im Augenblick davor, falls es ihn gab, galt:",
-            "{}, falls der Ablauf schon begonnen hatte, galt:",
-        ),
+        UnaryOperator.ALWAYS: "[zu jeder Zeit {} gilt|immer gilt|von da an gilt immer]:",
+        UnaryOperator.NEVER: "[zu keiner Zeit {} kommt|nie kommt|von da an kommt nie] vor:",
+        UnaryOperator.EVENTUALLY: "[irgendwann {}|irgendwann|dann oder später] gilt:",
+        UnaryOperator.NEXT: "[{}|im nächsten Augenblick] gilt:",
+        UnaryOperator.WEAK_NEXT: "[{}, falls der Ablauf so lange dauert|im nächsten Augenblick, "
+        "falls es ihn gibt], gilt:",
+        UnaryOperator.ONCE: "[irgendwann {}|am Beginn oder vorher|dann oder vorher] galt:",
+        UnaryOperator.HISTORICALLY: "[zu jeder Zeit {} galt|bis zum Beginn galt immer|bis dahin "
+        "galt immer]:",
+        UnaryOperator.PREVIOUSLY: "[{}|im Augenblick davor] galt:",
+        UnaryOperator.WEAK_PREVIOUSLY: "[{}, falls der Ablauf schon begonnen hatte|im Augenblick "
+        "davor, falls es ihn gab], galt:",
     },
     binary={
-        BinaryOperator.UNTIL: BinaryWords(
-            "es gilt: {left}, bis früher oder später gilt: {right}",
-            "es gilt: {left}, bis irgendwann {span} gilt: {right}",
-            "es gilt: {left}, bis irgendwann {span} gilt: {right}",
-        ),
-        BinaryOperator.WEAK_UNTIL: BinaryWords(
-            "es gilt: {left}, und zwar für immer oder nur, bis irgendwann gilt: {right}",
-            "es gilt: {left}, und zwar zu jeder Zeit {first} oder nur, bis irgendwann {span} gilt: "
-            "{right}",
-            "es gilt: {left}, und zwar für immer oder nur, bis irgendwann {span} gilt: {right}",
-        ),
-        BinaryOperator.RELEASE: BinaryWords(
-            "wenn nicht vorher ein Augenblick davon entbindet, in dem gilt: {left}, so gilt immer: "
-            "{right}",
-            "wenn nicht vorher ein Augenblick davon entbindet, in dem gilt: {left}, so gilt zu "
-            "jeder Zeit {span}: {right}",
-            "wenn nicht vorher ein Augenblick davon entbindet, in dem gilt: {left}, so gilt zu "
-            "jeder Zeit {span}: {right}",
-        ),
-        BinaryOperator.STRONG_RELEASE: BinaryWords(
-            "wenn nicht vorher ein Augenblick davon entbindet, der kommen muss und in dem gilt: "
-            "{left}, so gilt immer: {right}",
-            "wenn nicht vorher ein Augenblick davon entbindet, der {first} kommen muss und in dem "
-            "gilt: {left}, so gilt zu jeder Zeit {span}: {right}",
-            "wenn nicht vorher ein Augenblick davon entbindet, der kommen muss und in dem gilt: "
-            "{left}, so gilt zu jeder Zeit {span}: {right}",
-        ),
-        BinaryOperator.SINCE: BinaryWords(
-            "es gilt: {left}, und zwar seitdem galt: {right}",
-            "es gilt: {left}, und zwar seit einem Augenblick {span}, in dem galt: {right}",
-            "es gilt: {left}, und zwar seit einem Augenblick {span}, in dem galt: {right}",
-        ),
+        BinaryOperator.UNTIL: "es gilt: {left}, bis [früher oder später|irgendwann {span}] gilt: "
+        "{right}",
+        BinaryOperator.WEAK_UNTIL: "es gilt: {left}, und zwar [für immer|zu jeder Zeit "
+        "{first}|für immer] oder nur, bis irgendwann[| {span}] gilt: {right}",
+        BinaryOperator.RELEASE: "wenn nicht vorher ein Augenblick davon entbindet, in dem gilt: "
+        "{left}, so gilt [immer|zu jeder Zeit {span}]: {right}",
+        BinaryOperator.STRONG_RELEASE: "wenn nicht vorher ein Augenblick davon entbindet, der "
+        "[|{first} |]kommen muss und in dem gilt: {left}, so gilt [immer|zu jeder Zeit {span}]: "
+        "{right}",
+        BinaryOperator.SINCE: "es gilt: {left}, und zwar [seitdem|seit einem Augenblick {span}, "
+        "in dem] galt: {right}",
     },
     iff="genau dann gilt: {}, wenn gilt: {}",
     xor="entweder gilt: {}, oder es gilt: {}, aber nicht beides",

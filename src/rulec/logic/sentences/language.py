@@ -50,31 +50,13 @@ class SpanWords:
     exactly: str
 
 
-@dataclass(frozen=True, slots=True)
-class AdverbWords:
-    """Adverbs for a condition at other times.
-
-    ``inside`` relative to a time named before, ``outside`` relative to the start of the trace,
-    ``bounded`` with a time span.
-    """
-
-    inside: str
-    outside: str
-    bounded: str
-
-
-@dataclass(frozen=True, slots=True)
-class BinaryWords:
-    """Patterns of a temporal operator with two sides; ``endless`` for a bound without upper end."""
-
-    plain: str
-    bounded: str
-    endless: str
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Language:
     """The words and patterns of a language; ``{}`` is a placeholder.
+
+    In ``adverbs``, ``[a|b|c]`` are for a condition at other times: with a time span, relative to
+    the start of the trace, relative to a time named before; the last one stands for what is
+    missing. Likewise in ``binary``: without a bound, with one, with one that has no upper end.
 
     There is no comma after a lead that ends with one of ``no_pause_after``, nor before a clause
     that begins with one of ``runs_on``.
@@ -130,8 +112,8 @@ class Language:
     counts_only: str
     counts_never: str
     not_so: str
-    adverbs: Mapping[UnaryOperator, AdverbWords]
-    binary: Mapping[BinaryOperator, BinaryWords]
+    adverbs: Mapping[UnaryOperator, str]
+    binary: Mapping[BinaryOperator, str]
     iff: str
     xor: str
     implies: str
@@ -176,3 +158,13 @@ class Language:
             noun=own.noun.format(noun),
             plural=own.plural.format(self.plural(noun)),
         )
+
+
+def alternative(pattern: str, number: int) -> str:
+    """A pattern with the alternative of this number, or the last one, at each ``[a|b]``."""
+
+    def chosen(alternatives: re.Match[str]) -> str:
+        each = alternatives[1].split("|")
+        return each[min(number, len(each) - 1)]
+
+    return re.sub(r"\[([^\]]*)\]", chosen, pattern)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from rulec.logic import formula as ltl
+from rulec.logic.formula import with_terms
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.language import Language
 
@@ -35,16 +36,11 @@ def spoken_formula(
 
     A phrase is, for example, ``ego [is|is not] behind {}``; for a quantity it is a noun.
     """
-
-    def inside(operand: ltl.Formula) -> ltl.Formula:
-        return spoken_formula(operand, phrases, language)
-
     match formula:
         case ltl.Unary() | ltl.Binary():
-            return ltl.with_operands(formula, inside)
-        case ltl.Comparison(terms):
-            spoken = [(factor, spoken_term(term, phrases, language)) for factor, term in terms]
-            return replace(formula, terms=tuple(spoken))
+            return ltl.with_operands(formula, lambda part: spoken_formula(part, phrases, language))
+        case ltl.Comparison():
+            return with_terms(formula, lambda term: spoken_term(term, phrases, language))
         case ltl.Atom(name, arguments, value):
             phrase = phrases.get(value or name)
             if phrase is None:

@@ -9,20 +9,11 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import Literal
 
-from rulec.logic.formula import (
-    Atom,
-    BinaryOperator,
-    Bound,
-    Comparison,
-    Count,
-    QuantityTerm,
-    Term,
-    UnaryOperator,
-)
+from rulec.logic import formula as ltl
 from rulec.logic.one_point import is_none, is_some
 from rulec.logic.printing import term_text
 from rulec.logic.sentences.english import ENGLISH
-from rulec.logic.sentences.language import Language, SpanWords
+from rulec.logic.sentences.language import Language, SpanWords, alternative
 from rulec.logic.sentences.spoken_words import SpokenAtom, SpokenQuantity
 
 _FROM_ZERO = re.compile(r"(?<![\w.,])0 (\S+) - (\d[\d.,]*) \1(?!\S)")
@@ -54,7 +45,7 @@ def of_objects(name: str, arguments: Sequence[str], language: Language = ENGLISH
     return language.the_name_of.format(spoken(name), listed(arguments, language))
 
 
-def atom_clause(atom: Atom, language: Language, *, holds: bool) -> str:
+def atom_clause(atom: ltl.Atom, language: Language, *, holds: bool) -> str:
     """A clause stating that the atom holds, or that it does not."""
     if isinstance(atom, SpokenAtom):
         return atom.affirmed if holds else atom.denied
@@ -69,13 +60,13 @@ def atom_clause(atom: Atom, language: Language, *, holds: bool) -> str:
     return language.atom_of[not holds].format(spoken(atom.name), of)
 
 
-_NO_COUNTS: Mapping[Count, str] = MappingProxyType({})
+_NO_COUNTS: Mapping[ltl.Count, str] = MappingProxyType({})
 
 
 def comparison_clause(
-    comparison: Comparison,
+    comparison: ltl.Comparison,
     language: Language,
-    bodies: Mapping[Count, str] = _NO_COUNTS,
+    bodies: Mapping[ltl.Count, str] = _NO_COUNTS,
     *,
     holds: bool,
 ) -> str:
@@ -85,7 +76,7 @@ def comparison_clause(
     """
     whole = text = comparison_text(comparison)
     terms = [term for _, term in comparison.terms]
-    counts = [term for term in terms if isinstance(term, Count)]
+    counts = [term for term in terms if isinstance(term, ltl.Count)]
     # What is counted may be compared, too: its signs are not those of this comparison.
     for number, count in enumerate(counts):
         text = text.replace(term_text(count), _counted_at(number))
@@ -107,12 +98,12 @@ def _counted_at(number: int) -> str:
 
 
 def _is_spoken(
-    text: str, number: int, bodies: Mapping[Count, str], counts: Sequence[Count]
+    text: str, number: int, bodies: Mapping[ltl.Count, str], counts: Sequence[ltl.Count]
 ) -> bool:
     return _counted_at(number) in text and counts[number] in bodies
 
 
-def _aloud(text: str, terms: Sequence[Term], language: Language) -> str:
+def _aloud(text: str, terms: Sequence[ltl.Term], language: Language) -> str:
     """An arithmetic text with its quantities named in words."""
     nouns = {
         term_text(term): (
@@ -121,7 +112,7 @@ def _aloud(text: str, terms: Sequence[Term], language: Language) -> str:
             else of_objects(term.name, term.arguments, language)
         )
         for term in terms
-        if isinstance(term, QuantityTerm)
+        if isinstance(term, ltl.QuantityTerm)
     }
     text = _FROM_ZERO.sub(r"-\2 \1", language.decimals(text))
     if nouns:  # Replaced in one pass: a noun may contain another quantity's name.
@@ -130,7 +121,7 @@ def _aloud(text: str, terms: Sequence[Term], language: Language) -> str:
     return text.replace(" * ", f" {language.times} ")
 
 
-def counted(comparison: Comparison, count: Count, language: Language) -> str:
+def counted(comparison: ltl.Comparison, count: ltl.Count, language: Language) -> str:
     """The head of a counting clause: ``there are at least 8 ...``.
 
     In full ``there are at least 8 vehicles x for which``, to be followed by the body.
@@ -146,14 +137,14 @@ def counted(comparison: Comparison, count: Count, language: Language) -> str:
     return there.format(f"{n} {words.noun if is_one else words.plural}", count.variable)
 
 
-def comparison_text(comparison: Comparison) -> str:
+def comparison_text(comparison: ltl.Comparison) -> str:
     """The comparison's own text, or else one built from its terms, without units."""
     if comparison.text:
         return comparison.text
     return f"{terms_text(comparison.terms)} {comparison.relation} {number_text(comparison.limit)}"
 
 
-def terms_text(terms: Sequence[tuple[Fraction, Term]]) -> str:
+def terms_text(terms: Sequence[tuple[Fraction, ltl.Term]]) -> str:
     """``gap(v) - 0.5 * speed``."""
     text = ""
     for coefficient, term in terms:
@@ -170,17 +161,17 @@ def amount(value: Fraction, unit: Literal["s", "steps"], language: Language = EN
     return f"{number_text(value, language)} {steps if unit == 'steps' else unit}"
 
 
-def span(bound: Bound, beyond: str, language: Language) -> str:
+def span(bound: ltl.Bound, beyond: str, language: Language) -> str:
     """A time span: ``from 1 s to 4 s later``. ``beyond`` is the word for later or before."""
     return f"{_between(bound, language.span, language)} {beyond}"
 
 
-def lasting(bound: Bound, language: Language) -> str:
+def lasting(bound: ltl.Bound, language: Language) -> str:
     """A duration: ``for 1 s to 4 s``."""
     return _between(bound, language.lasting, language)
 
 
-def _between(bound: Bound, words: SpanWords, language: Language) -> str:
+def _between(bound: ltl.Bound, words: SpanWords, language: Language) -> str:
     low = amount(bound.low, bound.unit, language)
     if bound.high is None:
         return words.at_least.format(low)
@@ -191,15 +182,15 @@ def _between(bound: Bound, words: SpanWords, language: Language) -> str:
 
 
 _PAST = (
-    UnaryOperator.ONCE,
-    UnaryOperator.HISTORICALLY,
-    UnaryOperator.PREVIOUSLY,
-    UnaryOperator.WEAK_PREVIOUSLY,
+    ltl.UnaryOperator.ONCE,
+    ltl.UnaryOperator.HISTORICALLY,
+    ltl.UnaryOperator.PREVIOUSLY,
+    ltl.UnaryOperator.WEAK_PREVIOUSLY,
 )
 
 
 def adverb(
-    operator: UnaryOperator, bound: Bound | None, language: Language, *, inside: bool
+    operator: ltl.UnaryOperator, bound: ltl.Bound | None, language: Language, *, inside: bool
 ) -> str:
     """The words before a condition at another time, or at other times.
 
@@ -207,26 +198,24 @@ def adverb(
     """
     words = language.adverbs[operator]
     if bound is None:
-        return words.inside if inside else words.outside
+        return alternative(words, 2 if inside else 1)
     later = language.later if inside else language.after_start
-    return words.bounded.format(
-        span(bound, language.before if operator in _PAST else later, language)
-    )
+    beyond = language.before if operator in _PAST else later
+    return alternative(words, 0).format(span(bound, beyond, language))
 
 
 def pattern_of(
-    operator: BinaryOperator, bound: Bound | None, language: Language, *, inside: bool
+    operator: ltl.BinaryOperator, bound: ltl.Bound | None, language: Language, *, inside: bool
 ) -> str:
     """The pattern of a binary operator's phrase, with placeholders for its two sides."""
     words = language.binary[operator]
     places = {"left": "{}", "right": "{}"}
     if bound is None:
-        return words.plain.format(**places)
+        return alternative(words, 0).format(**places)
     beyond = language.later if inside else language.after_start
-    if operator is BinaryOperator.SINCE:
+    if operator is ltl.BinaryOperator.SINCE:
         beyond = language.before
     here = span(bound, beyond, language)
-    if bound.high is None:
-        return words.endless.format(span=here, **places)
-    first = span(replace(bound, low=bound.high * 0), beyond, language)
-    return words.bounded.format(span=here, first=first, **places)
+    first = "" if bound.high is None else span(replace(bound, low=Fraction(0)), beyond, language)
+    endless = bound.high is None
+    return alternative(words, 1 + endless).format(span=here, first=first, **places)

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Indices
 from rulec.diagnostics import SourceLocation
-from rulec.logic.formula import Formula
+from rulec.logic.bounds import looks_elsewhere
+from rulec.logic.formula import BinaryOperator, Formula, chain_of
 from rulec.logic.free_names import variables_of
-from rulec.logic.opportunities import conjuncts, looks_elsewhere
 from rulec.logic.semantics import Semantics, steps_to_settle
 from rulec.monitoring.batch.columns.column_numbers import ComparisonSides
 from rulec.monitoring.moments.name_tables import NameTables
@@ -81,7 +81,7 @@ class ReadyFormula:
         LOOKBACK.within(self.settles, place, "the formula")
         self.world_parts = [
             part
-            for part in conjuncts(formula)
+            for part in chain_of(BinaryOperator.AND, formula)
             if next(variables_of(part), None) is None and not looks_elsewhere(part)
         ]
         self.comparisons: dict[int, ComparisonSides] = {}

@@ -12,6 +12,7 @@ from fractions import Fraction
 from itertools import islice, product
 
 from rulec.logic import formula as ltl
+from rulec.logic.formula import all_of, any_of, negated
 from rulec.logic.free_names import number_sum, renamed_number, terms_of, variables_of
 from rulec.logic.linear_comparison import comparison
 from rulec.logic.printing import sum_text
@@ -180,15 +181,6 @@ def either(condition: ltl.Formula, value: NumberByCases, otherwise: NumberByCase
     )
 
 
-def negated(formula: ltl.Formula) -> ltl.Formula:
-    """The negation of a formula, without a double one."""
-    if isinstance(formula, ltl.Unary) and formula.operator is ltl.UnaryOperator.NOT:
-        return formula.operand
-    if isinstance(formula, ltl.Constant):
-        return ltl.Constant(not formula.value)
-    return ltl.Unary(ltl.UnaryOperator.NOT, formula)
-
-
 def added(left: Linear, right: Linear, sign: int = 1) -> Linear:
     """The sum or, with ``sign`` -1, the difference."""
     terms = dict(left.coefficients)
@@ -286,25 +278,3 @@ def _comparison(linear: Linear, relation: ltl.Relation, text: str) -> ltl.Formul
             return calculated(_sum_of(linear), relation, text)
         terms[part] = factor
     return comparison(terms, relation, -linear.constant, text)
-
-
-def all_of(formulas: Iterable[ltl.Formula]) -> ltl.Formula:
-    """The conjunction of formulas; true if there are none."""
-    return _joined(ltl.BinaryOperator.AND, True, formulas)
-
-
-def any_of(formulas: Iterable[ltl.Formula]) -> ltl.Formula:
-    """The disjunction of formulas; false if there are none."""
-    return _joined(ltl.BinaryOperator.OR, False, formulas)
-
-
-def _joined(
-    operator: ltl.BinaryOperator, neutral: bool, formulas: Iterable[ltl.Formula]
-) -> ltl.Formula:
-    whole: ltl.Formula | None = None
-    for formula in formulas:
-        if formula == ltl.Constant(not neutral):
-            return formula
-        if formula != ltl.Constant(neutral):
-            whole = formula if whole is None else ltl.Binary(operator, whole, formula)
-    return ltl.Constant(neutral) if whole is None else whole

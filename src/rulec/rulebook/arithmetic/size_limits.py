@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from rulec.logic import formula as ltl
+from rulec.logic.formula import operands_of
 
 MOST_PARTS = 20_000
 """The most operators, atoms and comparisons of a rule's formula, including those within counts."""
@@ -34,17 +35,7 @@ def exceeded_limit(formula: ltl.Formula) -> Limit | None:
             return "deep"
         if parts > MOST_PARTS:
             return "large"
-        rest += ((inner, depth + 1) for inner in _parts(part))
+        terms = part.terms if isinstance(part, ltl.Comparison) else ()
+        bodies = [term.body for _, term in terms if isinstance(term, ltl.Count)]
+        rest += ((inner, depth + 1) for inner in (*operands_of(part), *bodies))
     return None
-
-
-def _parts(formula: ltl.Formula) -> tuple[ltl.Formula, ...]:
-    match formula:
-        case ltl.Unary(_, operand):
-            return (operand,)
-        case ltl.Binary(_, left, right):
-            return left, right
-        case ltl.Comparison(terms):
-            return tuple(term.body for _, term in terms if isinstance(term, ltl.Count))
-        case _:
-            return ()

@@ -27,19 +27,9 @@ TOO_LONG = Code(
     "general one directly, and state itself what the rulebooks between them change; for "
     "amendments, `in force from` gives the values of several days in one rulebook. Instead of so "
     "many levels, give rules of one level weights.",
-    bad="""echo 'rulebook b0 signal p hard rule r { require never p }' > b0.rules
-n=0
-while [ $n -le 50 ]; do
-  echo "rulebook b$((n + 1)) extends b$n" > b$((n + 1)).rules
-  n=$((n + 1))
-done
-rulec check b51.rules""",
-    good="""echo 'rulebook b0 signal p hard rule r { require never p }' > b0.rules
-n=0
-while [ $n -le 50 ]; do
-  echo "rulebook b$((n + 1)) extends b0" > b$((n + 1)).rules
-  n=$((n + 1))
-done
-rulec check b51.rules""",
+    bad="echo 'rulebook b0 signal p hard rule r { require never p }' > b0.rules\nn=0\n"
+    "while [ $n -le 50 ]; do\n"
+    '  echo "rulebook b$((n + 1)) extends ⟪b$n|b0⟫" > b$((n + 1)).rules\n  n=$((n + 1))\ndone\n'
+    "rulec check b51.rules",
     kind="command",
 )

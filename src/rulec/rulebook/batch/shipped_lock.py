@@ -13,8 +13,8 @@ from rulec.files.work_trees import refuse_link_out
 from rulec.files.written_files import written_whole
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.batch.batch_check import is_vocabulary
-from rulec.rulebook.batch.lock_messages import NOT_AS_LOCKED, WRONG_LOCK
 from rulec.rulebook.files.search_path import read_bytes
+from rulec.rulebook.rulebook_messages import NOT_AS_LOCKED, WRONG_LOCK
 from rulec.settings import settings_file
 from rulec.toml import parsed_toml
 

@@ -9,7 +9,7 @@ from typing import Literal
 
 from rulec.logic.formula import Bound
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases, constant, share_of
-from rulec.rulebook.elaborate import bound_messages
+from rulec.rulebook.elaborate import constant_messages as say
 from rulec.rulebook.elaborate.elaboration_messages import point_of_thousands, too_long
 from rulec.rulebook.elaborate.scope import Evaluate, Scope
 from rulec.rulebook.names.declaration_messages import unknown_unit
@@ -80,11 +80,11 @@ def bound_of(
     low = Fraction(0) if bound.low is None else amounts[0]
     high = None if bound.high is None else amounts[-1]
     if len(units) > 1:
-        scope.report(bound_messages.two_units_of_time(bound))
+        scope.report(say.two_units_of_time(bound))
     elif bound.exact != (node.operator in _ONE_INSTANT):
-        scope.report(bound_messages.wrong_form(node, bound))
+        scope.report(say.wrong_form(node, bound))
     elif high is not None and high < low:
-        scope.report(bound_messages.empty_bound(bound))
+        scope.report(say.empty_bound(bound))
     else:
         return Bound(low, high, units.pop(), bound.span)
     return False
@@ -98,7 +98,7 @@ def _time(
         if whole is not None and whole.denominator == 1:
             return whole, "steps"
         if whole is not None:
-            scope.report(bound_messages.half_a_step(side))
+            scope.report(say.half_a_step(side))
         return None
     number = evaluate(side, scope)
     if number is None:
@@ -107,5 +107,5 @@ def _time(
     is_time = number.dimension in (None, DIMENSIONS["time"])
     if number.is_constant and is_time and amount >= 0:
         return amount, "s"
-    scope.report(bound_messages.no_time(side, number))
+    scope.report(say.no_time(side, number))
     return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.ways_out import Help, offering
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
@@ -19,7 +19,9 @@ from rulec.rulebook.names.atom_messages import (
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.rulebook_overlay import Value
 from rulec.syntax import tree
-from rulec.syntax.tree_printer import print_parameters
+from rulec.syntax.messages.larger_edits import exchanged
+from rulec.syntax.tree_printer import print_formula, print_parameters
+from rulec.vocabulary import Signal
 from rulec.vocabulary.dimensions import (
     ACCELERATION,
     ANGLE,
@@ -31,13 +33,31 @@ from rulec.vocabulary.dimensions import (
     Dimension,
 )
 
+OTHERWISE_DECLARED = Code(
+    "R0328",
+    title="a definition does not fit the word that it defines",
+    why="A declared signal may be defined; where a source does not tell it, the definition does. "
+    "It is about the same objects as the signal, and looks at the present and the past.",
+    bad="rulebook example\nsignal rain, wet\ndefine wet = ⟪eventually|once⟫ rain\n"
+    "hard rule r { require never wet }\n",
+)
+
+
+SENSELESS_BOUND = Code(
+    "R0317",
+    title="a time bound makes no sense",
+    why="Bounds are fixed times or whole numbers of steps: `[<= 3 s]`, `[>= 2 steps]`, `[1 s .. 4 "
+    "s]`. `next` and `previously` refer to one instant: `next[2 steps]`.",
+    bad="rulebook example\nsignal wet\nhard rule r { require eventually[4 s .. 1 s] wet }\n",
+    good="rulebook example\nsignal wet\nhard rule r { require eventually[1 s .. 4 s] wet }\n",
+)
+
+
 CIRCULAR_DEFINITION = Code(
     "R0316",
     title="a definition or a parameter refers to itself",
     why="A definition replaces its name, so it cannot contain itself, not even indirectly.",
-    bad="rulebook example\nsignal wet\ndefine slippery = wet or slippery\n"
-    "hard rule r { require never slippery }\n",
-    good="rulebook example\nsignal wet\ndefine slippery = wet\n"
+    bad="rulebook example\nsignal wet\ndefine slippery = wet⟪ or slippery|⟫\n"
     "hard rule r { require never slippery }\n",
 )
 
@@ -47,11 +67,8 @@ NO_SINGLE_VALUE = Code(
     why="Values can be dated by `in force from … until …`. The day is the requested one, else "
     "that of the rulebook's `law` line, else today. On that day there must be exactly one value.",
     bad='rulebook example\nlaw "Highway Code" as of 2019-01-01\nquantity gap in m default 9\n'
-    "param least : length = 1.5 m in force from 2020-04-28\n"
-    "hard rule r { require always gap >= least }\n",
-    good='rulebook example\nlaw "Highway Code" as of 2019-01-01\nquantity gap in m default 9\n'
-    "param least : length = 1 m in force until 2020-04-27\n"
-    "param least : length = 1.5 m in force from 2020-04-28\n"
+    "param least : length = 1⟪| m in force until 2020-04-27\n"
+    "param least : length = 1⟫.5 m in force from 2020-04-28\n"
     "hard rule r { require always gap >= least }\n",
 )
 
@@ -172,3 +189,112 @@ def parameter_of_another_kind(
 def _usual_unit(dimension: Dimension) -> str:
     units = {ACCELERATION: "m/s^2", ANGLE: "deg", LENGTH: "m", MASS: "kg", SPEED: "km/h", TIME: "s"}
     return units.get(dimension, "")
+
+
+def two_units_of_time(bound: tree.BoundNode) -> Diagnostic:
+    return SENSELESS_BOUND.at(
+        bound.span,
+        "a bound is in units of time or in steps, not in both",
+        expected="expected one of them",
+        help="write both ends in seconds, or both in steps",
+    )
+
+
+def wrong_form(node: tree.Prefix | tree.Infix, bound: tree.BoundNode) -> Diagnostic:
+    """``next[<= 2 s]`` or ``eventually[2 s]``."""
+    amount = bound.high or bound.low
+    text = print_formula(amount) if amount else "2 s"
+    if bound.exact:
+        message = f"`{node.operator}` looks at a stretch of time, and this is an instant"
+        way_out: Help = offering(
+            f"write `[<= {text}]`, `[>= {text}]` or `[{text} .. {text}]`",
+            f"[<= {text}]",
+            f"[>= {text}]",
+        )
+    else:
+        message = f"`{node.operator}` looks at one instant, and this is a stretch of time"
+        instant = f"write `{node.operator}[{text}]`"
+        if bound.high and not bound.low and node.operator in ("next", "previously"):
+            within = "eventually" if node.operator == "next" else "once"
+            instant += f" for that instant, `{within}[<= {text}]` for one on the way there"
+        way_out = instant
+    return SENSELESS_BOUND.at(bound.span, message, expected="expected another bound", help=way_out)
+
+
+def empty_bound(bound: tree.BoundNode) -> Diagnostic:
+    """``[4 s .. 1 s]``."""
+    ends = [end.span.text for end in (bound.low, bound.high) if end is not None]
+    return SENSELESS_BOUND.at(
+        bound.span,
+        "the bound ends before it begins",
+        expected="expected the smaller number first",
+        help=offering("exchange the two", *(exchanged(bound.span, *ends) if len(ends) > 1 else ())),
+    )
+
+
+def half_a_step(side: tree.NumberLiteral) -> Diagnostic:
+    """``[<= 1.5 steps]``."""
+    return SENSELESS_BOUND.at(
+        side.span,
+        f"there is no {side.text} of a step",
+        expected="expected a whole number of steps",
+        help="write a whole number, or a time in seconds",
+    )
+
+
+def no_time(side: tree.Amount, number: NumberByCases) -> Diagnostic:
+    way_out = "write a time, such as `3 s`, or a number of steps, such as `2 steps`"
+    if not number.is_constant:
+        why = "changes from state to state"
+    elif number.dimension is None or number.cases[0][1].constant < 0:
+        why = "is below 0"
+    else:
+        why = f"is {kind_of(number.dimension)}"
+        if number.dimension == LENGTH:
+            way_out = "write a time, such as `3 s`; how far is compared, as in `gap(v) <= 100 m`"
+    return SENSELESS_BOUND.at(
+        side.span,
+        f"`{short(side)}` {why}; a bound is a fixed time",
+        expected="expected a time",
+        help=way_out,
+    )
+
+
+def no_signal(item: tree.DefineItem, declared: Span | None) -> Diagnostic:
+    return OTHERWISE_DECLARED.at(
+        item.name.span,
+        f"`{item.name.text}` is no signal",
+        expected="only a signal can be defined",
+        help="give the definition a name of its own",
+        labels=() if declared is None else (Label(declared.place, "declared here"),),
+    )
+
+
+def other_objects(item: tree.DefineItem, declared: Signal, place: Span) -> Diagnostic:
+    objects = ", ".join(declared.parameters)
+    return OTHERWISE_DECLARED.at(
+        item.name.span,
+        f"`{item.name.text}` is about other objects than its definition",
+        expected=f"expected `({objects})`" if objects else "expected no objects",
+        help="define it for the objects that it is declared for",
+        labels=(Label(place.place, "declared here"),),
+    )
+
+
+def looks_ahead(item: tree.DefineItem, operator: str) -> Diagnostic:
+    return OTHERWISE_DECLARED.at(
+        item.body.span,
+        f"the definition of `{item.name.text}` looks ahead with `{operator}`",
+        expected="expected the present or the past",
+        help="use `once`, `historically`, `since` or `previously`",
+    )
+
+
+def meanings_circle(item: tree.DefineItem, names: tuple[str, ...]) -> Diagnostic:
+    way = " → ".join(f"`{name}`" for name in names)
+    return CIRCULAR_DEFINITION.at(
+        item.name.span,
+        f"the definition of `{names[0]}` goes round in a circle: {way}",
+        expected="this word is among those that define it",
+        help="say one of them without the others",
+    )

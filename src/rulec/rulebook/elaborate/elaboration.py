@@ -7,9 +7,10 @@ from fractions import Fraction
 from functools import partial
 
 from rulec.logic import formula as ltl
+from rulec.logic.formula import negated
 from rulec.logic.printing import formula_text, term_text
 from rulec.rulebook.arithmetic import linear_arithmetic as numbers
-from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases, TooManyCasesError, negated
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases, TooManyCasesError
 from rulec.rulebook.arithmetic.size_limits import exceeded_limit
 from rulec.rulebook.elaborate import constant_messages
 from rulec.rulebook.elaborate import elaboration_messages as say

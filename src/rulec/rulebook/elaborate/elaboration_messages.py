@@ -28,9 +28,7 @@ POINT_OF_THOUSANDS = Code(
     "Three decimals ending in 0 are rarely written for anything else. Remove the 0 or the point "
     "to make it clear.",
     bad="rulebook example\nquantity mass in kg default 0\n"
-    "hard rule r { require always mass <= 3.500 kg }\n",
-    good="rulebook example\nquantity mass in kg default 0\n"
-    "hard rule r { require always mass <= 3500 kg }\n",
+    "hard rule r { require always mass <= ⟪3.500|3500⟫ kg }\n",
 )
 
 OPERATOR_BEFORE_THEN = Code(
@@ -38,8 +36,7 @@ OPERATOR_BEFORE_THEN = Code(
     title="an operator applies to a phase before `then`, not to the sequence",
     why="Operators such as `never` bind tightest, so `never a then b` means `(never a) then b`: a "
     "phase without `a`, then `b`. Put a whole sequence in parentheses.",
-    bad="rulebook example\nsignal a, b\nhard rule r { require never a then b }\n",
-    good="rulebook example\nsignal a, b\nhard rule r { require never (a then b) }\n",
+    bad="rulebook example\nsignal a, b\nhard rule r { require never ⟪|(⟫a then b⟪|)⟫ }\n",
 )
 
 DIVIDED_BY_ZERO = Code(
@@ -48,9 +45,7 @@ DIVIDED_BY_ZERO = Code(
     why="Nothing can be divided by 0. Where a number that changes may be 0, comparisons of what is "
     "divided by it are unknown.",
     bad="rulebook example\nquantity gap in m default 100\n"
-    "hard rule r { require always gap / 0 >= 2 m }\n",
-    good="rulebook example\nquantity gap in m default 100\n"
-    "hard rule r { require always gap / 2 >= 2 m }\n",
+    "hard rule r { require always gap / ⟪0|2⟫ >= 2 m }\n",
 )
 
 MISPLACED_TEMPORAL_OPERATOR = Code(
@@ -60,9 +55,7 @@ MISPLACED_TEMPORAL_OPERATOR = Code(
     "parameter is a number at one moment. To follow one object over time, use a variable of the "
     "rule.",
     bad="rulebook example\ntype car\nsignal near(c: car) default false\n"
-    "hard rule r { require every c: car (always not near(c)) }\n",
-    good="rulebook example\ntype car\nsignal near(c: car) default false\n"
-    "hard rule r { require always every c: car (not near(c)) }\n",
+    "hard rule r { require ⟪|always ⟫every c: car (⟪always |⟫not near(c)) }\n",
 )
 
 

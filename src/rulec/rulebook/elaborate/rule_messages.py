@@ -31,8 +31,7 @@ UNUSED_VARIABLE = Code(
     "formula does not use multiplies the choices without changing any verdict, except that the "
     "rule is not judged at all if there is no such object.",
     bad="rulebook example\nuse paper\n"
-    "hard rule r (v: vehicle, p: pedestrian) { require always not r(v) }\n",
-    good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(v) }\n",
+    "hard rule r (v: vehicle⟪, p: pedestrian|⟫) { require always not r(v) }\n",
 )
 
 EXCEPTION_BEHIND_ANOTHER = Code(
@@ -42,19 +41,16 @@ EXCEPTION_BEHIND_ANOTHER = Code(
     "at night, signposted or not. It may be misread as an exception to the exception, which would "
     "be one formula: `unless signposted and not night`. If either is meant to exempt, put each on "
     "its own line, as `rulec fmt` does.",
-    bad="rulebook example\nsignal turning, signposted, night default false\n"
-    "hard rule r {\n  require never turning\n  unless signposted unless night\n}\n",
-    good="rulebook example\nsignal turning, signposted, night default false\n"
-    "hard rule r {\n  require never turning\n  unless signposted and not night\n}\n",
+    bad="rulebook example\nsignal turning, signposted, night default false\nhard rule r {\n"
+    "  require never turning\n  unless signposted ⟪unless|and not⟫ night\n}\n",
 )
 
 UNUSED_CONSTANT = Code(
     "R0208",
     title="an option, a parameter or a definition is not used",
     why="No rule, parameter or definition of the rulebook uses it, so it has no effect.",
-    bad="rulebook example\nsignal wet\noption strict = on\nhard rule r { require never wet }\n",
-    good="rulebook example\nsignal wet\noption strict = on\n"
-    "hard rule r { require always (strict implies not wet) }\n",
+    bad="rulebook example\nsignal wet\noption strict = on\n"
+    "hard rule r { require ⟪never wet|always (strict implies not wet)⟫ }\n",
 )
 
 MANY_CHOICES = Code(
@@ -67,10 +63,9 @@ MANY_CHOICES = Code(
     "what a rule about five objects does; `some`, `every` and `count` cover many objects without "
     "choosing them.",
     bad="rulebook example\ntype car\nsignal close(a: car, b: car) default false\n"
-    "hard rule r (a: car, b: car, c: car, d: car, e: car) {\n"
-    "  require never (close(a, b) and close(b, c) and close(c, d) and close(d, e))\n}\n",
-    good="rulebook example\ntype car\nsignal close(a: car, b: car) default false\n"
-    "hard rule r (a: car, b: car) { require never close(a, b) }\n",
+    "hard rule r (a: car, b: car⟪, c: car, d: car, e: car) {\n"
+    "  require never (close(a, b) and close(b, c) and close(c, d) and close(d, e))\n"
+    "|) { require never close(a, b) ⟫}\n",
 )
 
 UNKNOWN_PRIORITY = Code(
@@ -79,9 +74,7 @@ UNKNOWN_PRIORITY = Code(
     why="The level of a rule, as in `in legal`, must be one of the levels ordered by the "
     "`priority` lines of the rulebook or of those that it extends.",
     bad="rulebook example\npriority safety > legal\nsignal wet\n"
-    "hard rule r in lawful { require never wet }\n",
-    good="rulebook example\npriority safety > legal\nsignal wet\n"
-    "hard rule r in legal { require never wet }\n",
+    "hard rule r in ⟪lawful|legal⟫ { require never wet }\n",
 )
 
 UNFITTING_SCOPE = Code(
@@ -94,9 +87,7 @@ UNFITTING_SCOPE = Code(
     "with bounds of `then`, such as `then[<= 2 s]`. Where no scope fits, write two rules: one for "
     "when the exception holds, and one for when it does not.",
     bad="rulebook example\nsignal wet, fog\n"
-    "hard rule r { require eventually wet unless fog throughout }\n",
-    good="rulebook example\nsignal wet, fog\n"
-    "hard rule r { require eventually wet unless fog initially }\n",
+    "hard rule r { require eventually wet unless fog ⟪throughout|initially⟫ }\n",
 )
 
 NOT_ABOVE_ZERO = Code(
@@ -104,8 +95,7 @@ NOT_ABOVE_ZERO = Code(
     title="a weight or a step is not greater than 0",
     why="A weight says how much a rule counts compared to others of its level; a step is the time "
     "between the states of examples.",
-    bad="rulebook example\nsignal wet\nsoft rule r weight 0 { require never wet }\n",
-    good="rulebook example\nsignal wet\nsoft rule r weight 1 { require never wet }\n",
+    bad="rulebook example\nsignal wet\nsoft rule r weight ⟪0|1⟫ { require never wet }\n",
 )
 
 NOT_A_MULTIPLE = Code(
@@ -115,12 +105,8 @@ NOT_A_MULTIPLE = Code(
     "is within one state. The examples of this rule, whose states are a step of the rulebook "
     "apart, therefore judge it by another bound than the one that is written. Choose a bound that "
     "is a multiple of the step, or a finer step.",
-    bad="rulebook example\nsignal wet default false\n"
-    "hard rule r {\n  require always (wet implies eventually[<= 1.5 s] not wet)\n"
-    "  accept { not wet }\n}\n",
-    good="rulebook example\nstep 0.5 s\nsignal wet default false\n"
-    "hard rule r {\n  require always (wet implies eventually[<= 1.5 s] not wet)\n"
-    "  accept { not wet }\n}\n",
+    bad="rulebook example\n⟪|step 0.5 s\n⟫signal wet default false\nhard rule r {\n"
+    "  require always (wet implies eventually[<= 1.5 s] not wet)\n  accept { not wet }\n}\n",
     kind="compiled",
 )
 

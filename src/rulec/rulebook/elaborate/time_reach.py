@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook.elaborate import time_reach_messages as say
-from rulec.rulebook.names.referenced_names import atoms_in, parts_of
+from rulec.rulebook.names.referenced_names import atoms_in, chain_of, parts_of
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.rulebook_overlay import Overlay
 from rulec.syntax import tree
@@ -20,7 +20,7 @@ def requirement_warnings(
     node: tree.Formula, symbols: SymbolTable, overlay: Overlay
 ) -> Iterator[Diagnostic]:
     """Warnings for the parts of a requirement that apply to the first state only."""
-    parts = [*_conjuncts(node)]
+    parts = [*chain_of("and", node)]
     for part in parts:
         asked_once = _asked_once(part, overlay.definitions)
         if asked_once is not None and _changes(asked_once, symbols, overlay):
@@ -40,7 +40,7 @@ def _asked_once(
     match node:
         case tree.Infix("implies", left, right) if not _looks_ahead(left, definitions):
             # `congested implies always p` is about whole traces, by how they begin.
-            return None if all(map(_is_of_all_states, _conjuncts(right))) else left
+            return None if all(map(_is_of_all_states, chain_of("and", right))) else left
         case tree.Prefix("not", tree.Infix("then", left, _)):
             return left
     return None
@@ -73,14 +73,6 @@ def covers(first: Diagnostic, warning: Diagnostic) -> bool:
     if say.leaves_reach_open(first):
         return place.start <= warning.place.start
     return place.start <= warning.place.start < (place.end_line or 0, place.end_column or 0)
-
-
-def _conjuncts(node: tree.Formula) -> Iterator[tree.Formula]:
-    if isinstance(node, tree.Infix) and node.operator == "and":
-        yield from _conjuncts(node.left)
-        yield from _conjuncts(node.right)
-    else:
-        yield node
 
 
 def _narrow(

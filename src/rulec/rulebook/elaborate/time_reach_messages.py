@@ -19,9 +19,7 @@ FIRST_STATE_ONLY = Code(
     "of `not`, before it. If you mean the first state, write `always (previously true or p)`, "
     "which requires `p` only in the state that has none before it.",
     bad="rulebook example\nquantity speed in km/h default 0\n"
-    "hard rule r { require speed <= 50 km/h }\n",
-    good="rulebook example\nquantity speed in km/h default 0\n"
-    "hard rule r { require always (speed <= 50 km/h) }\n",
+    "hard rule r { require ⟪|always (⟫speed <= 50 km/h⟪|)⟫ }\n",
 )
 
 NARROW_OPERATOR = Code(
@@ -33,8 +31,7 @@ NARROW_OPERATOR = Code(
     "kin: what is forbidden until a sign is written `not a until b`, for `never (a until b)` would "
     "forbid the sign itself. If you mean the other reading, put the parentheses around the "
     "operator, as `rulec fmt` does, to make it visible.",
-    bad="rulebook example\nsignal a, b\nhard rule r { require always a implies b }\n",
-    good="rulebook example\nsignal a, b\nhard rule r { require always (a implies b) }\n",
+    bad="rulebook example\nsignal a, b\nhard rule r { require always ⟪|(⟫a implies b⟪|)⟫ }\n",
 )
 
 TWO_READINGS = Code(
@@ -45,9 +42,7 @@ TWO_READINGS = Code(
     "requires `c` immediately, not when `b` occurs. Many read it the other way. Parentheses "
     "around one part or the other make the meaning clear; the message shows both.",
     bad="rulebook example\nsignal a, b, c default false\n"
-    "hard rule r { require always (a implies b until c and not a) }\n",
-    good="rulebook example\nsignal a, b, c default false\n"
-    "hard rule r { require always (a implies b until (c and not a)) }\n",
+    "hard rule r { require always (a implies b until ⟪|(⟫c and not a)⟪|)⟫ }\n",
 )
 
 

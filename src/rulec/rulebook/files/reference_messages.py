@@ -31,10 +31,8 @@ EXTENDS_CIRCLE = Code(
     why="Each rulebook builds upon a more general one, up to one that extends no other. A cycle "
     "is not possible.",
     bad="printf 'rulebook a\\nextends b\\n' > a.rules\n"
-    "printf 'rulebook b\\nextends a\\n' > b.rules\nrulec check a.rules\n",
-    good="printf 'rulebook a\\nextends b\\n' > a.rules\n"
-    "printf 'rulebook b\\nsignal p\\nhard rule r { require always p }\\n' > b.rules\n"
-    "rulec check a.rules\n",
+    "printf 'rulebook b\\⟪nextends a|nsignal p\\nhard rule r { require always p }⟫\\n' "
+    "> b.rules\nrulec check a.rules\n",
     kind="command",
 )
 
@@ -45,8 +43,7 @@ NAME_NOT_FOUND = Code(
     "among those that ship with rulec (`rulec list`). A rulebook in a folder of its own name, such "
     "as `mine/mine.rules`, may also extend those beside that folder. To refer to a file, give its "
     "path, such as `./mine.rules`.",
-    bad="rulebook example\nuse papr\nhard rule r { require never CONGESTED }\n",
-    good="rulebook example\nuse paper\nhard rule r { require never CONGESTED }\n",
+    bad="rulebook example\nuse ⟪papr|paper⟫\nhard rule r { require never CONGESTED }\n",
 )
 
 

@@ -30,18 +30,16 @@ UNKNOWN_NAME = Code(
     title="a name in a formula or a state is unknown",
     why="Formulas consist of signals and values of enumerations. They must be declared in the "
     "rulebook or in a vocabulary that it uses.",
-    bad="rulebook example\nuse paper\nhard rule r { require always not CONGESTD }\n",
-    good="rulebook example\nuse paper\nhard rule r { require always not CONGESTED }\n",
+    bad="rulebook example\nuse paper\nhard rule r { require always not ⟪CONGESTD|CONGESTED⟫ }\n",
 )
 
 UNKNOWN_VARIABLE = Code(
     "R0203",
     title="a variable is unknown",
     why="The variables of a rule are declared in parentheses after its name, each with a type.",
-    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(w) and b(v) "
-    "}\n",
-    good="rulebook example\nuse paper\n"
-    "hard rule r (v: vehicle) { require never (r(v) and next b(v)) }\n",
+    bad="rulebook example\nuse paper\n"
+    "hard rule r (v: vehicle) { require ⟪always not r(w) and b(v|never (r(v) and "
+    "next b(v)⟫) }\n",
 )
 
 
@@ -51,9 +49,7 @@ WRONG_ARITY = Code(
     why="A signal or an enumeration is about the world, or about as many objects as its "
     "declaration has parameters. In a formula it needs that many variables.",
     bad="rulebook example\nuse paper\n"
-    "hard rule r (v: vehicle) { require always (f or CONGESTED) }\n",
-    good="rulebook example\nuse paper\n"
-    "hard rule r (v: vehicle) { require always (f(v) or CONGESTED) }\n",
+    "hard rule r (v: vehicle) { require always (f⟪|(v)⟫ or CONGESTED) }\n",
 )
 
 WRONG_ARGUMENT_TYPE = Code(
@@ -61,9 +57,7 @@ WRONG_ARGUMENT_TYPE = Code(
     title="an argument is of the wrong type",
     why="A declaration for one type applies to its subtypes, but not to other objects.",
     bad="rulebook example\ntype car\ntype pedestrian\nsignal braking(c: car)\n"
-    "hard rule r (p: pedestrian) { require never braking(p) }\n",
-    good="rulebook example\ntype car\ntype pedestrian\nsignal braking(c: car)\n"
-    "hard rule r (c: car) { require never braking(c) }\n",
+    "hard rule r (⟪p: pedestrian|c: car⟫) { require never braking(⟪p|c⟫) }\n",
 )
 
 NOT_BOOLEAN = Code(
@@ -72,9 +66,7 @@ NOT_BOOLEAN = Code(
     why="Formulas consist of what is true or false in a state: signals, and values of "
     "enumerations. Quantities, types, objects and whole enumerations are neither.",
     bad="rulebook example\nsurface is one of road, crossing\n"
-    "hard rule r { require never surface }\n",
-    good="rulebook example\nsurface is one of road, crossing\n"
-    "hard rule r { require never crossing }\n",
+    "hard rule r { require never ⟪surface|crossing⟫ }\n",
 )
 
 AMBIGUOUS_NAME = Code(
@@ -83,9 +75,7 @@ AMBIGUOUS_NAME = Code(
     why="The name `b_v` is short for `b(v)`. If the underscores of a name can be read in two "
     "ways, use parentheses.",
     bad="rulebook example\ntype t\nsignal a(o: t), a_b(o: t)\n"
-    "hard rule r (b_c: t, c: t) { require a_b_c and a(c) and a(b_c) }\n",
-    good="rulebook example\ntype t\nsignal a(o: t), a_b(o: t)\n"
-    "hard rule r (b_c: t, c: t) { require always (a_b(c) and a(c) and a(b_c)) }\n",
+    "hard rule r (b_c: t, c: t) { require ⟪a_b_c|always (a_b(c)⟫ and a(c) and a(b_c)⟪|)⟫ }\n",
 )
 
 
@@ -95,9 +85,7 @@ MIXED_DIMENSIONS = Code(
     why="A length cannot be compared with a speed, nor a number without a unit with either. Only "
     "a bare 0 fits every kind.",
     bad="rulebook example\nquantity speed in km/h default 0\n"
-    "hard rule r { require always speed <= 50 }\n",
-    good="rulebook example\nquantity speed in km/h default 0\n"
-    "hard rule r { require always speed <= 50 km/h }\n",
+    "hard rule r { require always speed <= 50 ⟪|km/h ⟫}\n",
 )
 
 NUMBER_OR_FORMULA = Code(
@@ -106,9 +94,7 @@ NUMBER_OR_FORMULA = Code(
     why="Formulas are made of what is true or false: signals, values and comparisons. Comparisons "
     "are made of numbers: quantities, parameters, counts, and numbers with their units.",
     bad="rulebook example\nquantity speed in km/h default 0\n"
-    "hard rule r { require always not speed }\n",
-    good="rulebook example\nquantity speed in km/h default 0\n"
-    "hard rule r { require always not speed > 0 }\n",
+    "hard rule r { require always not speed ⟪|> 0 ⟫}\n",
 )
 
 _ALIKE = 0.75

@@ -29,11 +29,8 @@ DECLARED_TWICE = Code(
     why="Types, signals, quantities, enumerations and their values share one namespace with those "
     "of the vocabularies in use. Rename one of the two. Two vocabularies with names in common "
     "cannot be used together.",
-    bad="rulebook example\nsignal wet\nsurface is one of dry, wet\n"
+    bad="rulebook example\nsignal ⟪wet|raining⟫\nsurface is one of dry, wet\n"
     "hard rule r { require always dry }\n",
-    good="rulebook example\nsignal raining\nsurface is one of dry, wet\n"
-    "hard rule r { require always dry }"
-    "\n",
 )
 
 UNKNOWN_UNIT = Code(
@@ -42,10 +39,8 @@ UNKNOWN_UNIT = Code(
     why="Numbers have units. The units of quantities, parameters and comparisons must be known so "
     "that they can be converted exactly. Units are case-sensitive. A plain number, such as how "
     "many passengers there are, is declared `in m/m`.",
-    bad="rulebook example\nquantity speed in KMH default 0\n"
-    "hard rule r { require always speed <= 50 KMH }\n",
-    good="rulebook example\nquantity speed in km/h default 0\n"
-    "hard rule r { require always speed <= 50 km/h }\n",
+    bad="rulebook example\nquantity speed in ⟪KMH|km/h⟫ default 0\n"
+    "hard rule r { require always speed <= 50 ⟪KMH|km/h⟫ }\n",
 )
 
 UNKNOWN_DIMENSION = Code(
@@ -53,20 +48,16 @@ UNKNOWN_DIMENSION = Code(
     title="a kind of number is unknown",
     why="After the colon, a parameter states its kind of number: a length, time, speed, "
     "acceleration, mass, angle, area, frequency, or a plain number.",
-    bad="rulebook example\nquantity speed in km/h default 0\nparam pace : velocity = 7 km/h\n"
-    "hard rule r { require always speed <= pace }\n",
-    good="rulebook example\nquantity speed in km/h default 0\nparam pace : speed = 7 km/h\n"
-    "hard rule r { require always speed <= pace }\n",
+    bad="rulebook example\nquantity speed in km/h default 0\n"
+    "param pace : ⟪velocity|speed⟫ = 7 km/h\nhard rule r { require always speed <= pace }\n",
 )
 
 TYPE_CIRCLE = Code(
     "R0304",
     title="types are subtypes of each other in a circle",
     why="A type can be a subtype of another, that of a third, and so on, but never of itself.",
-    bad="rulebook example\ntype bus is vehicle\ntype vehicle is bus\nsignal p\n"
-    "hard rule r { require always p }\n",
-    good="rulebook example\ntype vehicle\ntype bus is vehicle\nsignal p\n"
-    "hard rule r { require always p }\n",
+    bad="rulebook example⟪|\ntype vehicle⟫\ntype bus is vehicle⟪\ntype vehicle is bus|⟫\n"
+    "signal p\nhard rule r { require always p }\n",
 )
 
 UNFITTING_DEFAULT = Code(
@@ -74,9 +65,7 @@ UNFITTING_DEFAULT = Code(
     title="a default is not one of the values",
     why="The default of an enumeration applies where no value is given, so it must be one of the "
     "values.",
-    bad="rulebook example\nlight is one of red, green default grean\n"
-    "hard rule r { require always red }\n",
-    good="rulebook example\nlight is one of red, green default green\n"
+    bad="rulebook example\nlight is one of red, green default ⟪grean|green⟫\n"
     "hard rule r { require always red }\n",
 )
 
@@ -85,9 +74,7 @@ PARAMETER_WITHOUT_TYPE = Code(
     title="a parameter's type is left out where it is not clear",
     why="Without a type, `signal near(o)` is about objects of the only type without a parent. If "
     "there is none, or more than one, the type must be written.",
-    bad="rulebook example\ntype vehicle\ntype pedestrian\nsignal near(o)\n"
-    "hard rule r (v: vehicle) { require never near(v) }\n",
-    good="rulebook example\ntype vehicle\ntype pedestrian\nsignal near(o: vehicle)\n"
+    bad="rulebook example\ntype vehicle\ntype pedestrian\nsignal near(o⟪|: vehicle⟫)\n"
     "hard rule r (v: vehicle) { require never near(v) }\n",
 )
 
@@ -97,9 +84,7 @@ NOTHING_TO_MARK = Code(
     why="A `constant` or `presumed` line lists signals, quantities and enumerations, which must "
     "be declared in the rulebook or in a vocabulary that it uses. It lists an enumeration, not "
     "one of its values, and the bare name of a declaration about objects.",
-    bad="rulebook example\nkind is one of a_car, a_truck\nconstant kinds\n"
-    "hard rule r { require always a_car }\n",
-    good="rulebook example\nkind is one of a_car, a_truck\nconstant kind\n"
+    bad="rulebook example\nkind is one of a_car, a_truck\nconstant ⟪kinds|kind⟫\n"
     "hard rule r { require always a_car }\n",
 )
 
@@ -110,9 +95,7 @@ NOT_TO_BE_PRESUMED = Code(
     "Every verdict that rests on it says so. A rulebook and its vocabularies may presume a dozen "
     "names, since a verdict that rests on more says little about what was observed. Names that "
     "are not presumed are unknown where nothing provides them.",
-    bad="rulebook example\nsignal waved_through\npresumed waved_through\n"
-    "hard rule r { require never waved_through }\n",
-    good="rulebook example\nsignal waved_through default false\npresumed waved_through\n"
+    bad="rulebook example\nsignal waved_through⟪| default false⟫\npresumed waved_through\n"
     "hard rule r { require never waved_through }\n",
 )
 

@@ -23,18 +23,6 @@ def free_names(item: tree.Item) -> frozenset[str]:
     return frozenset(name for formula in formulas_of(item) for name in _free(formula, own))
 
 
-def _free(formula: tree.Formula, own: frozenset[str]) -> Iterator[str]:
-    if isinstance(formula, tree.AtomUse):
-        names = (formula.name.text, *(argument.text for argument in formula.arguments))
-        yield from (name for name in names if name not in own)
-    if isinstance(formula, tree.Prefix | tree.Infix) and formula.bound is not None:
-        yield from _names_in_bound(formula.bound)
-    if isinstance(formula, tree.Aggregate):
-        own |= {formula.variable.name.text}
-    for part in parts_of(formula):
-        yield from _free(part, own)
-
-
 def formulas_of(item: tree.Item) -> Iterator[tree.Formula]:
     """An item's formulas as written, without its examples."""
     match item:
@@ -48,57 +36,35 @@ def formulas_of(item: tree.Item) -> Iterator[tree.Formula]:
             yield value
 
 
-def names_in_examples(rule: tree.RuleItem) -> Iterator[str]:
-    """Every name in the states of a rule's examples, with repetitions."""
-    for state in (state for example in rule.examples for state in example.states):
-        for literal in state.literals:
-            yield from names_in(literal.atom)
+def atoms_in(node: tree.SyntaxNode) -> Iterator[tree.AtomUse]:
+    """Every use of a name in a part of a file, those in bounds included."""
+    return (part for part in tree.nodes_in(node) if isinstance(part, tree.AtomUse))
 
 
-def atoms_in(formula: tree.Formula) -> Iterator[tree.AtomUse]:
-    """Every use of a name in a formula, except those in bounds."""
-    if isinstance(formula, tree.AtomUse):
-        yield formula
-    for part in parts_of(formula):
-        yield from atoms_in(part)
+def names_in(node: tree.SyntaxNode) -> Iterator[str]:
+    """Every name in a part of a file, those in bounds included, with repetitions."""
+    for use in atoms_in(node):
+        yield from (use.name.text, *(argument.text for argument in use.arguments))
+
+
+def _free(node: tree.SyntaxNode, own: frozenset[str]) -> Iterator[str]:
+    if isinstance(node, tree.AtomUse):
+        yield from (name for name in names_in(node) if name not in own)
+    elif isinstance(node, tree.Aggregate):
+        own |= {node.variable.name.text}
+    for _, part in tree.parts_of(node):
+        yield from _free(part, own)
 
 
 def parts_of(formula: tree.Formula) -> tuple[tree.Formula, ...]:
     """The operands of a formula's outermost operator, from left to right."""
-    match formula:
-        case tree.Prefix(operand=operand) | tree.Minus(operand) | tree.Aggregate(body=operand):
-            return (operand,)
-        case (
-            tree.Infix(left=left, right=right)
-            | tree.Compare(left=left, right=right)
-            | tree.Arithmetic(left=left, right=right)
-        ):
-            return left, right
-        case tree.Conditional(value, condition, otherwise):
-            return value, condition, otherwise
-        case tree.AtomUse() | tree.TruthLiteral() | tree.NumberLiteral():
-            return ()
+    return tuple([part for _, part in tree.parts_of(formula) if isinstance(part, tree.Formula)])
 
 
-def names_in(formula: tree.Formula) -> Iterator[str]:
-    """Every name in a formula, those in bounds included, with repetitions."""
-    for use in atoms_in(formula):
-        yield use.name.text
-        yield from (argument.text for argument in use.arguments)
-    for bound in _bounds(formula):
-        yield from _names_in_bound(bound)
-
-
-def _names_in_bound(bound: tree.BoundNode) -> Iterator[str]:
-    for side in (bound.low, bound.high):
-        if isinstance(side, tree.AtomUse):
-            yield side.name.text
-
-
-def _bounds(formula: tree.Formula) -> Iterator[tree.BoundNode]:
-    # In anything else there is no temporal operator.
-    if isinstance(formula, tree.Prefix | tree.Infix):
-        if formula.bound is not None:
-            yield formula.bound
-        for part in parts_of(formula):
-            yield from _bounds(part)
+def chain_of(operator: str, formula: tree.Formula) -> Iterator[tree.Formula]:
+    """The operands of a chain of one operator from left to right, however it is grouped."""
+    if isinstance(formula, tree.Infix) and formula.operator == operator:
+        yield from chain_of(operator, formula.left)
+        yield from chain_of(operator, formula.right)
+    else:
+        yield formula

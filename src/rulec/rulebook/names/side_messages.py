@@ -13,9 +13,7 @@ UNKNOWN_SIDE = Code(
     why="The near side is the side of the kerb: the right one where traffic drives on the right. "
     "`near_side_of` and `far_side_of` need a `traffic` line in the rulebook or in one that it "
     "extends, and a vocabulary with `left_of` and `right_of`.",
-    bad="rulebook example\nuse road\n"
-    "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n",
-    good="rulebook example\ntraffic right\nuse road\n"
+    bad="rulebook example\n⟪|traffic right\n⟫use road\n"
     "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n",
 )
 

@@ -74,6 +74,11 @@ class SymbolTable:
         item = self.items.get(name)
         return item.unit if isinstance(item, Quantity) else ""
 
+    def unit_meant(self, name: str) -> str:
+        """The unit of a quantity, also in its short form ``gap_v``; empty for any other name."""
+        heads = (name[:at] for at, letter in enumerate(name) if letter == "_")
+        return next(filter(None, map(self.unit_text, (name, *heads))), "")
+
     def atoms(self) -> list[str]:
         """The names of signals and of values."""
         signals = [name for name, item in self.items.items() if isinstance(item, Signal)]

@@ -34,9 +34,7 @@ RULE_TWICE = Code(
     why="Verdicts refer to rules by name, and compiling writes one file per rule, so every rule "
     "needs a unique name.",
     bad="rulebook example\nsignal p, q\nhard rule a { require always p }\n"
-    "hard rule a { require always q }\n",
-    good="rulebook example\nsignal p, q\nhard rule a { require always p }\n"
-    "hard rule b { require always q }\n",
+    "hard rule ⟪a|b⟫ { require always q }\n",
 )
 
 NOT_INHERITED = Code(
@@ -56,9 +54,7 @@ LOST_EXCEPTION = Code(
     "an exception to the inherited ones. If you mean to replace them, repeat those that remain, "
     "or state the new rule by `says` or `require`.",
     bad="rulebook example\nextends vienna\n"
-    "override rule keep_near_side { unless congested at some point }\n",
-    good="rulebook example\nextends vienna\n"
-    "override rule keep_near_side { also unless congested at some point }\n",
+    "override rule keep_near_side { ⟪|also ⟫unless congested at some point }\n",
 )
 
 IDLE_OVERRIDE = Code(
@@ -79,8 +75,7 @@ OTHER_TYPES = Code(
     "trucks. Leave the variables out to keep the inherited types. If the law is about the other "
     "type, say by `says` or `require` what the rule is now.",
     bad="rulebook example\nextends vienna\n"
-    'override rule following_distance (v: car) { cite "s. 1" }\n',
-    good='rulebook example\nextends vienna\noverride rule following_distance { cite "s. 1" }\n',
+    'override rule following_distance ⟪(v: car) |⟫{ cite "s. 1" }\n',
 )
 
 INHERITED_ALREADY = Code(
@@ -103,11 +98,7 @@ NEVER_IN_FORCE = Code(
     why="What is `in force from` one day `until` another applies on both days and in between. If "
     "the second day comes first, there is no such day.",
     bad="rulebook example\nsignal wet\nhard rule r {\n"
-    "  in force from 2024-07-01 until 2020-06-30\n"
-    "  require never wet\n}\n",
-    good="rulebook example\nsignal wet\nhard rule r {\n"
-    "  in force from 2020-07-01 until 2024-06-30\n"
-    "  require never wet\n}\n",
+    "  in force from ⟪2024|2020⟫-07-01 until ⟪2020|2024⟫-06-30\n  require never wet\n}\n",
 )
 
 

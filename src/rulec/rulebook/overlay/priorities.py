@@ -7,7 +7,7 @@ from itertools import pairwise, product
 
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook.arithmetic.size_messages import TOO_LONG
-from rulec.rulebook.overlay.priority_messages import priority_circle
+from rulec.rulebook.overlay.topic_messages import priority_circle
 from rulec.syntax import tree
 
 MOST_LEVELS = 100

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain
 
-from rulec.rulebook.names.referenced_names import names_in_examples, names_used
+from rulec.rulebook.names.referenced_names import chain_of, names_in, names_used
 from rulec.syntax import tree
 
-_CLAUSES = (
-    *("strength", "variables", "require", "cite", "says", "examples", "level", "weight"),
-    *("unless", "when", "source", "certainty", "in_force", "topics"),
+CLAUSES = (
+    *("strength", "variables", "level", "weight", "cite", "says", "source", "certainty"),
+    *("in_force", "topics", "require", "when", "unless", "examples"),
 )
+"""The fields of a rule's tree that an override may replace."""
 
 
 def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
@@ -20,11 +22,17 @@ def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
     """
     if over.cite:
         base = replace(base, source=None, certainty="")
-    given = {clause: value for clause in _CLAUSES if (value := getattr(over, clause))}
+    given = {clause: value for clause in CLAUSES if (value := getattr(over, clause))}
     if not _replaces_exceptions(over):
         given["unless"] = (*base.unless, *over.unless)
     complete = over.complete and base.complete
     return replace(base, name=over.name, span=over.span, complete=complete, **given)
+
+
+def softened(rule: tree.RuleItem, item: tree.SoftenItem) -> tree.RuleItem:
+    """The rule as a line softens it."""
+    level, weight = item.level or rule.level, item.weight or rule.weight
+    return replace(rule, strength="soft", level=level, weight=weight)
 
 
 def lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Parameter]:
@@ -38,7 +46,7 @@ def lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Parame
         unless=() if _replaces_exceptions(over) else base.unless,
         examples=() if over.examples else base.examples,
     )
-    names = {*names_used(inherited), *names_in_examples(inherited)}
+    names = {*names_used(inherited), *chain.from_iterable(map(names_in, inherited.examples))}
     kept = {variable.name.text for variable in over.variables}
     lost = (variable for variable in base.variables if variable.name.text not in kept)
     return [
@@ -81,16 +89,10 @@ def lost_exceptions(base: tree.RuleItem, over: tree.RuleItem) -> tuple[tree.Unle
     kept = [
         (formula, exception.scope)
         for exception in over.unless
-        for formula in (exception.formula, *_alternatives(exception.formula))
+        for formula in (exception.formula, *chain_of("or", exception.formula))
     ]
     return tuple(
         unless
         for unless in base.unless
-        if not all((formula, unless.scope) in kept for formula in _alternatives(unless.formula))
+        if not all((formula, unless.scope) in kept for formula in chain_of("or", unless.formula))
     )
-
-
-def _alternatives(formula: tree.Formula) -> tuple[tree.Formula, ...]:
-    if isinstance(formula, tree.Infix) and formula.operator == "or":
-        return (*_alternatives(formula.left), *_alternatives(formula.right))
-    return (formula,)

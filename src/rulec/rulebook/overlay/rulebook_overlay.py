@@ -18,6 +18,7 @@ from rulec.rulebook.overlay.rule_override import (
     lost_exceptions,
     lost_variables,
     merged,
+    softened,
 )
 from rulec.rulebook.rulebook_model import Remark
 from rulec.syntax import tree
@@ -282,12 +283,7 @@ class Overlay:
         entry = self.rules[item.name.text]
         if entry.item.strength == "soft" and item.level is None and item.weight is None:
             self.mistakes.append(say.soft_already(item, entry.item))
-        softer = replace(
-            entry.item,
-            strength="soft",
-            level=item.level or entry.item.level,
-            weight=item.weight or entry.item.weight,
-        )
+        softer = softened(entry.item, item)
         self.rules[item.name.text] = replace(entry, item=softer, changed=item.name)
         because = item.because.value if item.because else ""
         self.remarks.append(Remark(item.name.text, because, "softened", _name(file)))

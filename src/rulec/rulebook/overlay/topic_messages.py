@@ -1,4 +1,4 @@
-"""Messages about topics and listed articles."""
+"""Messages about topics, listed articles and levels of priority."""
 
 from __future__ import annotations
 
@@ -6,20 +6,27 @@ from collections.abc import Sequence
 
 from rulec.diagnostics import Diagnostic, Label, named
 from rulec.diagnostics.code import Code
-from rulec.diagnostics.ways_out import Help, meant, offering
+from rulec.diagnostics.ways_out import Help, line_left_out, meant, offering
 from rulec.rulebook.names.declaration_messages import DECLARED_TWICE
 from rulec.syntax import tree
 from rulec.syntax.messages.larger_edits import clause_left_out
+
+PRIORITY_CIRCLE = Code(
+    "R0321",
+    title="levels of priority form a circle",
+    why="With `a > b`, level a is above level b. Equal levels are written `a = b`.",
+    bad="rulebook example\npriority safety > legal\n⟪priority legal > safety\n|⟫signal wet\n"
+    "hard rule r in legal { require never wet }\n",
+)
+
 
 UNKNOWN_TOPIC = Code(
     "R0217",
     title="a topic is declared nowhere",
     why="Rules name their topics, from which tables of coverage are made. Topics are declared in "
     'the rulebook or in one that it extends, by `topics { NAME "title" }`.',
-    bad='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
-    "hard rule r {\n  topic zebras\n  require always p\n}\n",
-    good='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
-    "hard rule r {\n  topic zebra\n  require always p\n}\n",
+    bad='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\nhard rule r {\n'
+    "  topic ⟪zebras|zebra⟫\n  require always p\n}\n",
 )
 
 
@@ -44,4 +51,24 @@ def article_twice(again: tree.Text, first: tree.Text) -> Diagnostic:
         expected="listed again here",
         help=offering("keep one of them", clause_left_out(again.span)),
         labels=(Label(first.span.place, "first listed here"),),
+    )
+
+
+def priority_circle(
+    higher: tree.Name, lower: tree.Name, sign: str, levels: dict[str, tree.Name]
+) -> Diagnostic:
+    placed = dict.fromkeys(name.text for name in (higher, lower) if name.text in levels)
+    same = higher.text == lower.text
+    against = "itself" if same else "the order so far"
+    return PRIORITY_CIRCLE.at(
+        lower.span,
+        f"`{higher.text} {sign} {lower.text}` contradicts {against}",
+        expected="a level compared with itself" if same else "this closes a circle",
+        help=offering(
+            "leave one of the lines out; levels of one rank are written `a = b`",
+            *line_left_out(lower.span, "priority"),
+        ),
+        labels=tuple(
+            Label(levels[name].span.place, f"`{name}` was placed here") for name in placed
+        ),
     )

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
+from rulec.logic import formula as ltl
 from rulec.rulebook.rulebook_model import Rule
 
 AntecedentKind = Literal["implies", "phase", "when", "unless"]
@@ -28,7 +28,7 @@ class Antecedent:
     """A condition without which a part of a rule is vacuous."""
 
     kind: AntecedentKind
-    formula: Formula
+    formula: ltl.Formula
 
     @property
     def in_words(self) -> str:
@@ -43,16 +43,9 @@ def antecedents(rule: Rule) -> Iterator[Antecedent]:
             yield antecedent
 
 
-def has_constant(formula: Formula) -> bool:
+def has_constant(formula: ltl.Formula) -> bool:
     """Whether some part has a fixed value, like an option."""
-    match formula:
-        case Constant():
-            return True
-        case Unary(_, operand):
-            return has_constant(operand)
-        case Binary(_, left, right):
-            return has_constant(left) or has_constant(right)
-    return False
+    return any(isinstance(part, ltl.Constant) for part in ltl.parts_in(formula))
 
 
 def _all(rule: Rule) -> Iterator[Antecedent]:
@@ -63,38 +56,31 @@ def _all(rule: Rule) -> Iterator[Antecedent]:
     yield from _of(rule.required or rule.formula)
 
 
-def _of(formula: Formula) -> Iterator[Antecedent]:
-    match formula:
-        case Binary(BinaryOperator.AND, left, right):
-            yield from _of(left)
-            yield from _of(right)
-        case Unary(UnaryOperator.ALWAYS, operand):
-            yield from _implied(operand)
-        case Unary(UnaryOperator.NEVER, operand):
-            yield from _first_phase(operand)
+def _of(formula: ltl.Formula) -> Iterator[Antecedent]:
+    for part in ltl.chain_of(ltl.BinaryOperator.AND, formula):
+        match part:
+            case ltl.Unary(ltl.UnaryOperator.ALWAYS, operand):
+                yield from _implied(operand)
+            case ltl.Unary(ltl.UnaryOperator.NEVER, operand):
+                yield from _first_phases(operand)
 
 
-def _implied(formula: Formula) -> Iterator[Antecedent]:
-    match formula:
-        case Binary(BinaryOperator.AND, left, right):
-            yield from _implied(left)
-            yield from _implied(right)
-        case Binary(BinaryOperator.IMPLIES, left, _):
-            yield Antecedent("implies", left)
-        case Unary(UnaryOperator.NOT, operand):
-            yield from _first_phase(operand)
+def _implied(formula: ltl.Formula) -> Iterator[Antecedent]:
+    for part in ltl.chain_of(ltl.BinaryOperator.AND, formula):
+        match part:
+            case ltl.Binary(ltl.BinaryOperator.IMPLIES, left, _):
+                yield Antecedent("implies", left)
+            case ltl.Unary(ltl.UnaryOperator.NOT, operand):
+                yield from _first_phases(operand)
 
 
-def _first_phase(formula: Formula) -> Iterator[Antecedent]:
-    match formula:
-        case Binary(BinaryOperator.THEN, first, _):
-            yield Antecedent("phase", first)
-        case Binary(BinaryOperator.OR, left, right):
-            yield from _first_phase(left)
-            yield from _first_phase(right)
+def _first_phases(formula: ltl.Formula) -> Iterator[Antecedent]:
+    for part in ltl.chain_of(ltl.BinaryOperator.OR, formula):
+        if isinstance(part, ltl.Binary) and part.operator is ltl.BinaryOperator.THEN:
+            yield Antecedent("phase", part.left)
 
 
 def occurrence(rule: Rule, trigger: Antecedent, name: str) -> Rule:
     """The rule that this trigger holds at some time."""
-    formula = Unary(UnaryOperator.EVENTUALLY, trigger.formula)
+    formula = ltl.Unary(ltl.UnaryOperator.EVENTUALLY, trigger.formula)
     return Rule(name, rule.strength, rule.variables, formula, span=rule.span, step_s=rule.step_s)

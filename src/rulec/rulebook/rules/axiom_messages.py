@@ -17,10 +17,8 @@ CONTRADICTORY_AXIOMS = Code(
     title="facts contradict each other",
     why="A `fact` holds in every state. If several facts cannot hold together, or one cannot hold "
     "at all, there is no state to judge. The message names a minimal set of contradictory facts.",
-    bad="rulebook example\nsignal wet, fog default false\nfact wet or fog\nfact not wet\n"
-    "fact not fog\nhard rule r { require always not (wet and fog) }\n",
-    good="rulebook example\nsignal wet, fog default false\nfact not (wet and fog)\n"
-    "hard rule r { require always not wet }\n",
+    bad="rulebook example\nsignal wet, fog default false\nfact ⟪wet or fog\nfact not wet\n"
+    "fact not fog|not (wet and fog)⟫\nhard rule r { require always not ⟪(wet and fog)|wet⟫ }\n",
 )
 
 IMPOSSIBLE_TRIGGER = Code(
@@ -35,10 +33,7 @@ IMPOSSIBLE_TRIGGER = Code(
     "considers sequences of states (R0805).",
     bad="rulebook example\nsignal parked, standing, lit default false\n"
     "fact parked implies standing\n"
-    "hard rule r { require always (parked and not standing implies lit) }\n",
-    good="rulebook example\nsignal parked, standing, lit default false\n"
-    "fact parked implies standing\n"
-    "hard rule r { require always (parked and standing implies lit) }\n",
+    "hard rule r { require always (parked and ⟪not |⟫standing implies lit) }\n",
 )
 
 

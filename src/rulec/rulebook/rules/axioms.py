@@ -10,6 +10,7 @@ from functools import lru_cache
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
 from rulec.logic import formula as ltl
+from rulec.logic.formula import parts_in
 from rulec.logic.free_names import names_in, rename_variables, required_inputs
 from rulec.logic.kleene import Unknown, holds
 from rulec.logic.printing import formula_text
@@ -185,17 +186,10 @@ def _deciding_names(formula: ltl.Formula) -> frozenset[str] | None:
 
     A count may be zero, and objects may coincide, whatever is known.
     """
-    parts = [formula]
-    while parts:
-        match parts.pop():
-            case ltl.Unary(_, operand):
-                parts.append(operand)
-            case ltl.Binary(_, left, right):
-                parts += (left, right)
-            case ltl.Atom():
-                pass
-            case ltl.Comparison(terms) if not any(isinstance(term, ltl.Count) for _, term in terms):
-                pass
-            case _:
+    for part in parts_in(formula):
+        match part:
+            case ltl.Same() | ltl.Constant():
+                return None
+            case ltl.Comparison(terms) if any(isinstance(term, ltl.Count) for _, term in terms):
                 return None
     return frozenset(names_in(formula))

@@ -27,10 +27,8 @@ CONTRADICTORY_STATE = Code(
     why="In one state a signal is true or false, an enumeration has exactly one value, and every "
     "`fact` of the vocabulary holds. Values that a state does not mention have their default, if "
     "the rule reads them. Successive states are separated by `;`.",
-    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
-    "  require always not r(v)\n  accept { b(v) and l(v) }\n}\n",
-    good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
-    "  require always not r(v)\n  accept { b(v); l(v) }\n}\n",
+    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n  require always not r(v)\n"
+    "  accept { b(v)⟪ and|;⟫ l(v) }\n}\n",
 )
 
 INCOMPLETE_STATE = Code(
@@ -40,9 +38,7 @@ INCOMPLETE_STATE = Code(
     "default, every state must give the value if the formula needs it: a missing value is never "
     "taken to be false.",
     bad="rulebook example\nsignal wet, fog\nhard rule r {\n  require always not (wet and fog)\n"
-    "  accept { wet }\n}\n",
-    good="rulebook example\nsignal wet, fog\nhard rule r {\n  require always not (wet and fog)\n"
-    "  accept { wet and not fog }\n}\n",
+    "  accept { wet ⟪|and not fog ⟫}\n}\n",
 )
 
 DENIED_VALUE = Code(
@@ -50,10 +46,8 @@ DENIED_VALUE = Code(
     title="a state denies a value instead of naming one",
     why="In a state of an example an enumeration has exactly one value, which the state must "
     "name. Excluding one value would leave open which of the others it has.",
-    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
-    "  require always not r(v)\n  accept { not r(v) }\n}\n",
-    good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
-    "  require always not r(v)\n  accept { l(v) }\n}\n",
+    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n  require always not r(v)\n"
+    "  accept { ⟪not r|l⟫(v) }\n}\n",
 )
 
 

@@ -14,12 +14,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
+from rulec.logic import formula as ltl
 from rulec.logic.opportunities import trigger_of
-from rulec.rulebook.arithmetic.linear_arithmetic import all_of, any_of, negated
 from rulec.rulebook.rulebook_model import Exemption, ExemptionScope, Rule
 
-_THEN, _UNTIL = BinaryOperator.THEN, BinaryOperator.UNTIL
+_THEN, _UNTIL = ltl.BinaryOperator.THEN, ltl.BinaryOperator.UNTIL
 
 
 class ExemptionError(Exception):
@@ -30,7 +29,7 @@ class ExemptionError(Exception):
         self.problem = problem
 
 
-def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
+def exempted(formula: ltl.Formula, exemptions: Sequence[Exemption]) -> ltl.Formula:
     """The formula with its exceptions.
 
     Raises ExemptionError: for another scope than ``initially`` of a formula that guards no
@@ -41,17 +40,17 @@ def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
     match formula:
         case _ if not inside:
             pass
-        case Unary(UnaryOperator.ALWAYS, operand):
-            exempt = any_of(exemption.formula for exemption in inside)
-            formula = replace(formula, operand=any_of([exempt, operand]))
-        case Unary(UnaryOperator.NEVER, operand):
+        case ltl.Unary(ltl.UnaryOperator.ALWAYS, operand):
+            exempt = ltl.any_of(exemption.formula for exemption in inside)
+            formula = replace(formula, operand=ltl.any_of([exempt, operand]))
+        case ltl.Unary(ltl.UnaryOperator.NEVER, operand):
             formula = replace(formula, operand=_counted(_phases(operand), inside))
         case _:
             raise ExemptionError("no stretch")
-    return any_of([*initially, formula])
+    return ltl.any_of([*initially, formula])
 
 
-def rule_trigger(rule: Rule) -> Formula | None:
+def rule_trigger(rule: Rule) -> ltl.Formula | None:
     """What must hold in a state for the rule to be breached there.
 
     None if its form has no trigger.
@@ -64,67 +63,67 @@ def rule_trigger(rule: Rule) -> Formula | None:
 class _Phase:
     """A phase of a sequence with its duration; the last one has none."""
 
-    formula: Formula
-    bound: Bound | None = None
+    formula: ltl.Formula
+    bound: ltl.Bound | None = None
 
 
-def _phases(formula: Formula) -> list[_Phase]:
+def _phases(formula: ltl.Formula) -> list[_Phase]:
     phases: list[_Phase] = []
-    while isinstance(formula, Binary) and formula.operator is _THEN:
+    while isinstance(formula, ltl.Binary) and formula.operator is _THEN:
         phases.append(_Phase(formula.left, formula.bound))
         formula = formula.right
     return [*phases, _Phase(formula)]
 
 
-def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
+def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> ltl.Formula:
     """The sequence of these phases, unless an exemption exempts it."""
-    denied: dict[ExemptionScope, list[Formula]] = {}
+    denied: dict[ExemptionScope, list[ltl.Formula]] = {}
     for exemption in exemptions:
-        denied.setdefault(exemption.scope, []).append(negated(exemption.formula))
+        denied.setdefault(exemption.scope, []).append(ltl.negated(exemption.formula))
     if len(phases) == 1:
-        return all_of(
-            [phases[0].formula, *(negated(exemption.formula) for exemption in exemptions)]
+        return ltl.all_of(
+            [phases[0].formula, *(ltl.negated(exemption.formula) for exemption in exemptions)]
         )
     throughout = tuple(dict.fromkeys(denied.get("throughout", [])))
     if throughout and any(phase.bound is not None for phase in phases):
         raise ExemptionError("bounded phase")
-    at_start, at_end = all_of(denied.get("at start", [])), all_of(denied.get("at end", []))
-    everywhere = all_of(denied.get("at some point", []))
+    at_start, at_end = ltl.all_of(denied.get("at start", [])), ltl.all_of(denied.get("at end", []))
+    everywhere = ltl.all_of(denied.get("at some point", []))
     if len(phases) == 2:
-        before, behind = (all_of([own, everywhere]) for own in (at_start, at_end))
+        before, behind = (ltl.all_of([own, everywhere]) for own in (at_start, at_end))
         return _border(phases, before, behind, throughout)
     return _Inner(phases, at_start, at_end, everywhere).whole(throughout)
 
 
 def _border(
-    phases: list[_Phase], before: Formula, behind: Formula, somewhere: Sequence[Formula]
-) -> Formula:
+    phases: list[_Phase], before: ltl.Formula, behind: ltl.Formula, somewhere: Sequence[ltl.Formula]
+) -> ltl.Formula:
     """The formula of two phases, split at the border between them.
 
     ``before`` holds in the last instant of the first phase, ``behind`` in the first instant of the
     second, each of ``somewhere`` in one of both.
     """
     first, second = phases
-    behind = all_of([second.formula, behind])
+    behind = ltl.all_of([second.formula, behind])
     if not somewhere:
         return _ends(first, before, behind)
-    each = [any_of([own, Unary(UnaryOperator.NEXT, own)]) for own in somewhere]
-    last = all_of([first.formula, before, Unary(UnaryOperator.NEXT, behind), *each])
-    return Binary(_UNTIL, first.formula, last)
+    each = [ltl.any_of([own, ltl.Unary(ltl.UnaryOperator.NEXT, own)]) for own in somewhere]
+    last = ltl.all_of([first.formula, before, ltl.Unary(ltl.UnaryOperator.NEXT, behind), *each])
+    return ltl.Binary(_UNTIL, first.formula, last)
 
 
-def _ends(phase: _Phase, at_last: Formula, behind: Formula) -> Formula:
+def _ends(phase: _Phase, at_last: ltl.Formula, behind: ltl.Formula) -> ltl.Formula:
     """The formula of the rest of a phase and the instant after it.
 
     ``at_last`` holds in its last instant, ``behind`` in the one after it.
     """
-    if at_last == all_of([]):
-        return Binary(_THEN, phase.formula, behind, phase.bound)
+    if at_last == ltl.all_of([]):
+        return ltl.Binary(_THEN, phase.formula, behind, phase.bound)
     if phase.bound is not None:
-        before = Unary(UnaryOperator.PREVIOUSLY, at_last)
-        return Binary(_THEN, phase.formula, all_of([before, behind]), phase.bound)
-    last = all_of([phase.formula, at_last, Unary(UnaryOperator.NEXT, behind)])
-    return Binary(_UNTIL, phase.formula, last)
+        before = ltl.Unary(ltl.UnaryOperator.PREVIOUSLY, at_last)
+        return ltl.Binary(_THEN, phase.formula, ltl.all_of([before, behind]), phase.bound)
+    last = ltl.all_of([phase.formula, at_last, ltl.Unary(ltl.UnaryOperator.NEXT, behind)])
+    return ltl.Binary(_UNTIL, phase.formula, last)
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,37 +135,39 @@ class _Inner:
     """
 
     phases: list[_Phase]
-    at_start: Formula
-    at_end: Formula
-    everywhere: Formula
+    at_start: ltl.Formula
+    at_end: ltl.Formula
+    everywhere: ltl.Formula
 
-    def whole(self, somewhere: Sequence[Formula]) -> Formula:
+    def whole(self, somewhere: Sequence[ltl.Formula]) -> ltl.Formula:
         """The formula of all phases, each of ``somewhere`` holding somewhere in the stretch.
 
         Each may find an end of its own: up to the last of these ends, all of them hold somewhere.
         """
         first = self.phases[0]
-        inner = all_of([self._enter(1, own) for own in somewhere or (None,)])
-        return Binary(_THEN, first.formula, inner, first.bound)
+        inner = ltl.all_of([self._enter(1, own) for own in somewhere or (None,)])
+        return ltl.Binary(_THEN, first.formula, inner, first.bound)
 
-    def _enter(self, index: int, somewhere: Formula | None) -> Formula:
+    def _enter(self, index: int, somewhere: ltl.Formula | None) -> ltl.Formula:
         if index == len(self.phases) - 1:
             return self.phases[-1].formula
         inside = self._inside(index, somewhere)
-        return all_of([self.at_start, inside]) if index == 1 else inside
+        return ltl.all_of([self.at_start, inside]) if index == 1 else inside
 
-    def _inside(self, index: int, somewhere: Formula | None) -> Formula:
+    def _inside(self, index: int, somewhere: ltl.Formula | None) -> ltl.Formula:
         """The formula from some instant of an inner phase on."""
         phase = replace(
-            self.phases[index], formula=all_of([self.phases[index].formula, self.everywhere])
+            self.phases[index], formula=ltl.all_of([self.phases[index].formula, self.everywhere])
         )
         is_last = index == len(self.phases) - 2
-        at_last = self.at_end if is_last else all_of([])
+        at_last = self.at_end if is_last else ltl.all_of([])
         if somewhere is None:
             return _ends(phase, at_last, self._enter(index + 1, None))
-        leaves = all_of([at_last, Unary(UnaryOperator.NEXT, self._enter(index + 1, None))])
-        stays = Unary(UnaryOperator.NEXT, self._inside(index, None))
-        ways = [all_of([somewhere, any_of([leaves, stays])])]
+        leaves = ltl.all_of(
+            [at_last, ltl.Unary(ltl.UnaryOperator.NEXT, self._enter(index + 1, None))]
+        )
+        stays = ltl.Unary(ltl.UnaryOperator.NEXT, self._inside(index, None))
+        ways = [ltl.all_of([somewhere, ltl.any_of([leaves, stays])])]
         if not is_last:
-            ways.insert(0, Unary(UnaryOperator.NEXT, self._enter(index + 1, somewhere)))
-        return Binary(_UNTIL, phase.formula, all_of([phase.formula, any_of(ways)]))
+            ways.insert(0, ltl.Unary(ltl.UnaryOperator.NEXT, self._enter(index + 1, somewhere)))
+        return ltl.Binary(_UNTIL, phase.formula, ltl.all_of([phase.formula, ltl.any_of(ways)]))

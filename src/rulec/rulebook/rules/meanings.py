@@ -9,9 +9,9 @@ from types import MappingProxyType
 
 from rulec.diagnostics import Diagnostic
 from rulec.logic import formula as ltl
-from rulec.logic.bounds import BOOLEAN, PAST
+from rulec.logic.bounds import BOOLEAN, PAST, operations_of
 from rulec.logic.free_names import names_of, terms_of
-from rulec.rulebook.elaborate import meaning_messages as say
+from rulec.rulebook.elaborate import constant_messages as say
 from rulec.rulebook.elaborate.elaboration import number, truth
 from rulec.rulebook.elaborate.macro_expansion import parameter_value
 from rulec.rulebook.elaborate.scope import Scope, bound_variables
@@ -39,7 +39,7 @@ def meanings_of(
         circle = _place(name, found, ordered, ())
         if circle:
             item = constants.overlay.meanings[name]
-            mistakes.append(say.circle(item, circle))
+            mistakes.append(say.meanings_circle(item, circle))
             return MappingProxyType({}), mistakes
     return MappingProxyType(ordered), mistakes
 
@@ -90,9 +90,10 @@ def _meaning(
     if formula is None or None in kinds:
         return None
     mistakes += scope.unused(item.parameters, item)
-    ahead = next(_looks_ahead(formula), None)
+    later = (x.operator for x in operations_of(formula) if x.operator not in BOOLEAN | PAST)
+    ahead = next(later, None)
     if ahead is not None:
-        mistakes.append(say.looks_ahead(item, ahead))
+        mistakes.append(say.looks_ahead(item, ahead.value))
     return Meaning(tuple(variables), formula, names_of(formula))
 
 
@@ -108,18 +109,6 @@ def parameters_of(
             if value is not None and value.is_constant:
                 found[item.name.text] = value.cases[0][1].constant
     return MappingProxyType(found)
-
-
-def _looks_ahead(formula: ltl.Formula) -> Iterator[str]:
-    """The operators about later states."""
-    if isinstance(formula, ltl.Unary | ltl.Binary):
-        if formula.operator not in BOOLEAN | PAST:
-            yield formula.operator.value
-        sides = (
-            (formula.operand,) if isinstance(formula, ltl.Unary) else (formula.left, formula.right)
-        )
-        for side in sides:
-            yield from _looks_ahead(side)
 
 
 def with_calculated(vocabulary: Vocabulary, formulas: Iterable[ltl.Formula]) -> Vocabulary:

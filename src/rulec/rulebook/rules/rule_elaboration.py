@@ -9,7 +9,7 @@ from fractions import Fraction
 from rulec.diagnostics import Diagnostic, Label
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import between_instants
-from rulec.rulebook.arithmetic.linear_arithmetic import negated
+from rulec.logic.formula import negated
 from rulec.rulebook.arithmetic.size_limits import exceeded_limit
 from rulec.rulebook.elaborate import rule_messages as say
 from rulec.rulebook.elaborate.amounts import exact_value

@@ -40,6 +40,7 @@ FORMS: Final = {
 }
 IN_FORCE: Final = "dates are written `in force from 2020-04-28 until 2024-12-31`"
 _DATED: Final = ("param", "set", "in")
+_DATED_BY: Final = ("from", "force", "as", "since", "valid", "until")
 _EQUALS: Final = ("==", ":=", ":", "is", "to", "->", "=>", "be", "as")
 _OTHER_WORDS: Final = {
     **dict.fromkeys(("enum", "enumeration", "state"), "x is one of a, b"),
@@ -118,17 +119,13 @@ def advise_on_dates(ctx: ParseContext) -> Help:
         return offering(how_a_date_is_written(text), *((day,) if written else ()))
     if ctx.first not in _DATED and ctx.kind != "clause":
         return ""
-    if ctx.text in ("from", "force") and "IN" in ctx.accepted:
-        return IN_FORCE
-    if ctx.text in ("as", "since", "valid", "until") and "IN" in ctx.accepted:
-        return IN_FORCE
-    if "FORCE" in ctx.accepted or (
-        ctx.accepted <= {"FROM", "UNTIL", "$END"} and ctx.accepted != {"$END"}
-    ):
-        return IN_FORCE
-    if ctx.accepted == {"$END"} and ctx.text == "from":
-        return IN_FORCE
-    return ""
+    dated = (
+        ("IN" in ctx.accepted and ctx.text in _DATED_BY)
+        or "FORCE" in ctx.accepted
+        or (ctx.accepted <= {"FROM", "UNTIL", "$END"} and ctx.accepted != {"$END"})
+        or (ctx.accepted == {"$END"} and ctx.text == "from")
+    )
+    return IN_FORCE if dated else ""
 
 
 _HEAD: Final = "a rule's head is written `hard rule NAME (v: vehicle) in LEVEL weight NUMBER`"

@@ -20,10 +20,8 @@ CONTROL_CHARACTER = Code(
     title="a text contains a control character",
     why="Texts are shown in terminals and reports. Characters that control a terminal, or reverse "
     "the direction of the text, could make one rule look like another.",
-    bad='printf \'rulebook a title "\\033[2J" signal p '
-    "hard rule r { require always p }' | rulec check -",
-    good='printf \'rulebook a title "clear" signal p '
-    "hard rule r { require always p }' | rulec check -",
+    bad='printf \'rulebook a title "⟪\\033[2J|clear⟫" signal p hard rule r { require '
+    "always p }' | rulec check -",
     kind="command",
 )
 
@@ -31,9 +29,7 @@ NO_SUCH_DATE = Code(
     "R0110",
     title="a date is not in the calendar",
     why="A date is written `year-month-day` and must exist. Dates follow `as of` and `in force`.",
-    bad='rulebook example\nlaw "A law" as of 2023-02-29\nsignal p\n'
-    "hard rule r { require always p }\n",
-    good='rulebook example\nlaw "A law" as of 2024-02-29\nsignal p\n'
+    bad='rulebook example\nlaw "A law" as of ⟪2023|2024⟫-02-29\nsignal p\n'
     "hard rule r { require always p }\n",
 )
 
@@ -42,9 +38,7 @@ NUMBER_TOO_LARGE = Code(
     title="a number is too large or too long",
     why="Numbers may be as large as about 1.8e308, as in most programs, and have at most 400 "
     "digits.",
-    bad="rulebook example\nquantity speed in km/h default 1e999\nsignal p\n"
-    "hard rule r { require always p }\n",
-    good="rulebook example\nquantity speed in km/h default 130\nsignal p\n"
+    bad="rulebook example\nquantity speed in km/h default ⟪1e999|130⟫\nsignal p\n"
     "hard rule r { require always p }\n",
 )
 

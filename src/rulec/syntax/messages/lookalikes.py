@@ -28,9 +28,8 @@ HIDDEN_IN_COMMENT = Code(
     why="A character that controls a terminal, or reverses the direction of the text, can make a "
     "comment look like a rule or a rule like a comment (CVE-2021-42574). Comments may contain "
     "only visible characters, spaces and tabs.",
-    bad=r"printf 'rulebook a signal p # \342\200\256\n"
-    r"hard rule r { require always p }' | rulec check -",
-    good="printf 'rulebook a signal p # left\\nhard rule r { require always p }' | rulec check -",
+    bad="printf 'rulebook a signal p # ⟪\\342\\200\\256|left⟫\\nhard rule r { require always "
+    "p }' | rulec check -",
     kind="command",
 )
 
@@ -41,9 +40,8 @@ CONFUSABLE_NAME = Code(
     "several scripts or uses a script that no other word of the file uses (Unicode Technical "
     "Standard 39). A rule about the wrong one of two such names would never be violated. Rename "
     "one of them.",
-    bad="rulebook example\nsignal stop, \u0455top\n"
-    "hard rule r { require never (stop and \u0455top) }\n",
-    good="rulebook example\nsignal stop, halt\nhard rule r { require never (stop and halt) }\n",
+    bad="rulebook example\nsignal stop, ⟪\u0455top|halt⟫\n"
+    "hard rule r { require never (stop and ⟪\u0455top|halt⟫) }\n",
 )
 
 

@@ -42,8 +42,7 @@ UNTERMINATED_TEXT = Code(
     title="a text has no closing quote",
     why="A text is enclosed in straight double quotes and ends on the line on which it begins, "
     'even if the line is long. A quote inside a text is written `\\"`.',
-    bad='rulebook example\ntitle "An example\nsignal p\nhard rule r { require always p }\n',
-    good='rulebook example\ntitle "An example"\nsignal p\nhard rule r { require always p }\n',
+    bad='rulebook example\ntitle "An example⟪|"⟫\nsignal p\nhard rule r { require always p }\n',
 )
 
 FORMULA_TOO_DEEP = Code(
@@ -62,8 +61,7 @@ RESERVED_WORD = Code(
     title="a word of the language is used as a name",
     why="Words such as `rule`, `always` and `G` are reserved everywhere. Names are "
     "case-sensitive: `g` can be a name.",
-    bad="rulebook example\nsignal always\nhard rule r { require true }\n",
-    good="rulebook example\nsignal at_all_times\nhard rule r { require true }\n",
+    bad="rulebook example\nsignal ⟪always|at_all_times⟫\nhard rule r { require true }\n",
 )
 
 

@@ -80,9 +80,8 @@ CONFIRMED_AND_CHANGED = Code(
     why="The words `confirm rule` state that an inherited rule is also this rulebook's own law, "
     "and by which provision. The requirement stays as inherited: a confirmation may have `cite`, "
     "`source`, `certainty`, `says`, `topic` and examples, but no other clause.",
-    bad="rulebook example\nextends vienna\n"
-    'confirm rule near_side_passing {\n  cite "s. 1"\n  unless congested\n}\n',
-    good='rulebook example\nextends vienna\nconfirm rule near_side_passing {\n  cite "s. 1"\n}\n',
+    bad='rulebook example\nextends vienna\nconfirm rule near_side_passing {\n  cite "s. 1"\n'
+    "⟪  unless congested\n|⟫}\n",
 )
 
 
@@ -168,9 +167,7 @@ UNBALANCED_BRACE = Code(
     title="a brace is missing, or does not match",
     why="The clauses of a rule, the states of an example and the items of a vocabulary are "
     "enclosed in `{` and `}`. The message says which block was not opened or closed.",
-    bad="rulebook example\nsignal p\nhard rule a { require always p\n"
-    "hard rule b { require never p }\n",
-    good="rulebook example\nsignal p\nhard rule a { require always p }\n"
+    bad="rulebook example\nsignal p\nhard rule a { require always p⟪| }⟫\n"
     "hard rule b { require never p }\n",
 )
 
@@ -179,8 +176,7 @@ OUTSIDE_BRACES = Code(
     title="something is outside the braces that it belongs in",
     why="A clause such as `cite` or `accept` belongs inside the braces of a rule. Nothing can "
     "follow the closing `}` of a vocabulary.",
-    bad="rulebook example\nsignal p\nhard rule r { require always p }\naccept { p }\n",
-    good="rulebook example\nsignal p\nhard rule r { require always p accept { p } }\n",
+    bad="rulebook example\nsignal p\nhard rule r { require always p ⟪}\n|⟫accept { p }⟪| }⟫\n",
 )
 
 
