@@ -174,17 +174,15 @@ def _straddling(context: DriveContext) -> Truth:
     A turning body swings over the lanes of the road that it enters. Ego also straddles on its way
     over the middle of the road, to the lanes of the other direction or back.
     """
-    straddling, unknown = np.zeros((2, context.states), dtype=bool)
+    straddling, doubtful = np.zeros((2, context.states), dtype=bool)
     states = _near_a_bound(context).nonzero()[0]
     if len(states):
-        straddling[states], unknown[states] = _in_two_lanes(context, states)
+        straddling[states], doubtful[states] = _in_two_lanes(context, states)
         askew, spans = straddling & lies_askew_in_turn(context), context.spans
         if askew.any():
             # For as long as it lies across the mark without interruption before
-            unknown |= straddling & (spans.next_state(askew) < spans.next_state(~straddling))
-    over = _goes_over_the_middle(context)
-    straddling, unknown = straddling | over, unknown & ~over
-    return Truth.known(straddling).unknown_at(unknown)
+            doubtful |= straddling & (spans.next_state(askew) < spans.next_state(~straddling))
+    return Truth.known(straddling).unknown_at(doubtful) | _goes_over_the_middle(context)
 
 
 def _goes_over_the_middle(context: DriveContext) -> Flags:

@@ -23,6 +23,7 @@ from rulec.extraction.tracks.lane_sets import LaneSets, lane_sets, lanes_touched
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 
 if TYPE_CHECKING:
     from rulec.scenario.motion import Facing
@@ -73,14 +74,12 @@ def known_places(context: DriveContext) -> Cells:
 class Laterals:
     """On which side of others ego is: as measured, and within the tolerance of places.
 
-    ``codes`` are indices into ``LATERALS``, ``doubtful`` where another may be right. ``surely`` and
-    ``perhaps``: whether it is the same lane.
+    ``codes`` are indices into ``LATERALS``, ``doubtful`` where another may be right.
     """
 
     codes: Codes
     doubtful: Flags
-    surely: Flags
-    perhaps: Flags
+    same_lane: Truth
 
 
 def lateral(context: DriveContext) -> Codes:
@@ -105,11 +104,11 @@ def laterals(context: DriveContext) -> Laterals:
     codes = beside.sides(touched, 0.0)
     behind = ((cells.of(station(context)) == BEHIND) & (codes != beside.ego_at)).nonzero()[0]
     at_side = behind[~_in_the_way(context, cells.part(behind), beside.clear.take(behind))]
-    doubtful, perhaps = np.zeros(len(codes), dtype=bool), codes == SAME_LANE
+    doubtful, inside = np.zeros(len(codes), dtype=bool), codes == SAME_LANE
     doubtful[at_side] = True
     # Beyond a fork that it does not reach, ego may take the other road
     doubtful |= cells.of(context.extents.s_min) > cells.of(context.route_known_until)
-    surely = perhaps & ~doubtful
+    surely = inside & ~doubtful
     wavers = beside.wavering(both, place)
     tries = [(wavers, beside.part(wavers), [own.take(wavers) for own in both])]
     if offset.any():
@@ -124,12 +123,11 @@ def laterals(context: DriveContext) -> Laterals:
             others = lane.sides(touched, way * place)
             doubtful[chosen] |= others != own
             surely[chosen] &= others == SAME_LANE
-            perhaps[chosen] |= others == SAME_LANE
+            inside[chosen] |= others == SAME_LANE
     return Laterals(
         cells.laid(codes, SAME_LANE),
         cells.laid(doubtful),
-        surely=cells.laid(surely, True),
-        perhaps=cells.laid(perhaps, True),
+        Truth(cells.laid(surely, True), cells.laid(inside, True)),
     )
 
 
@@ -156,18 +154,26 @@ def _in_the_way(context: DriveContext, cells: Cells, clear: Floats) -> Flags:
 
 
 @once
-def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
-    """Masks of participants ahead in ego's lane: as measured, surely and perhaps."""
-    ahead, sides = station(context) == BEHIND, laterals(context)
-    measured = ahead & (sides.codes == SAME_LANE)
-    return measured, ahead & sides.surely, ahead & sides.perhaps
+def ahead_in_lane(context: DriveContext) -> Truth:
+    """Which participants are ahead in ego's lane."""
+    return laterals(context).same_lane & _is_behind(context)
+
+
+def measured_ahead(context: DriveContext) -> Flags:
+    """Mask of participants that are ahead in ego's lane as measured."""
+    ahead: Flags = _is_behind(context) & (laterals(context).codes == SAME_LANE)
+    return ahead
+
+
+def _is_behind(context: DriveContext) -> Flags:
+    behind: Flags = station(context) == BEHIND
+    return behind
 
 
 @once
-def perhaps_ahead(context: DriveContext) -> Cells:
-    """The cells of participants that are perhaps ahead in ego's lane."""
-    _, _, perhaps = ahead_in_lane(context)
-    return Cells.at(perhaps)
+def possibly_ahead(context: DriveContext) -> Cells:
+    """The cells of participants that are possibly ahead in ego's lane."""
+    return Cells.at(ahead_in_lane(context).possible)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

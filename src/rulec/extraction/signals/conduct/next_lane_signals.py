@@ -69,8 +69,7 @@ def _on_near_lane(context: DriveContext) -> Truth:
         doubtful |= _perhaps_on_near_lane(context) | _of_no_use(context)
     # Maps do not say for which buses a bus lane is, or when; and those that may use it need not
     doubtful |= _is_beside(context, _BUS_LANE)
-    unknown = free & doubtful | within_error
-    return Truth.known(free).unknown_at(unknown)
+    return Truth.known(free).unknown_at(free & doubtful | within_error)
 
 
 def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]:

@@ -37,12 +37,11 @@ def _crossing_kind(context: DriveContext) -> Measured:
     Unknown where there may be an unobserved light.
     """
     (start, _), directed = next_crossing(context), np.zeros(context.states, dtype=bool)
-    unknown = np.zeros(context.states, dtype=bool)
+    doubtful = np.zeros(context.states, dtype=bool)
     for place, (lit, unsure) in crossings_lit(context).items():
         directed |= (start == place) & lit
-        unknown |= (start == place) & unsure
-    kinds = np.where(directed, "directed_crossing", "zebra")
-    return Measured(kinds, unknown)
+        doubtful |= (start == place) & unsure
+    return Measured(np.where(directed, "directed_crossing", "zebra"), doubtful)
 
 
 @once_a_road

@@ -48,8 +48,8 @@ _HAIR_S = 1e-6
 
 def _ahead_for(context: DriveContext) -> Measured:
     """Times (s) for which ego has been behind others in the same lane, with their bounds."""
-    _, surely, _ = relations.ahead_in_lane(context)
-    cells, step_s = relations.perhaps_ahead(context), context.recording.step_s
+    surely = relations.ahead_in_lane(context).sure
+    cells, step_s = relations.possibly_ahead(context), context.recording.step_s
     since, seen = _since(context, cells)
     most = np.where(seen, (cells.columns - since + 1) * step_s, LONGEST_S)
     sure = surely.take(cells.places).nonzero()[0]
@@ -110,7 +110,7 @@ def parts_soon(context: DriveContext) -> Flags:
     of a participant that stops before that. Includes participants that reverse: they come, and ego
     stands or waits behind them.
     """
-    _, _, follows = relations.ahead_in_lane(context)
+    follows = relations.ahead_in_lane(context).possible
     horizon = context.steps_in(context.thresholds.parting_s)
     at, spans = Cells.of_drives(follows, context.spans)
     seen, way_across = at.of(context.relevant), at.of(relations.way_across(context))
@@ -176,8 +176,8 @@ def may_part(context: DriveContext) -> Truth:
 
     No law says how near they may be by then.
     """
-    unknown = parts_soon(context)
-    return Truth.known(unknown & False).unknown_at(unknown)
+    parts = parts_soon(context)
+    return Truth(parts & False, parts)
 
 
 def _in_junctions(context: DriveContext, cells: Cells) -> Flags:
@@ -230,8 +230,8 @@ def keeps_safe_gap(context: DriveContext) -> Truth:
     late = (follows & (short >= wrong)).nonzero()[0]
     far_too_late = short.take(late) > _OUTLIERS * wrong.take(late)
     moot[late] |= _brief_and_slight(context, cells.part(late), far_too_late)
-    safe, unknown = ~follows | (short <= 0), (follows & (np.abs(short) < wrong)) | moot
-    return Truth.known(cells.laid(safe, True)).unknown_at(cells.laid(unknown))
+    doubtful = cells.laid((follows & (np.abs(short) < wrong)) | moot)
+    return Truth.known(cells.laid(~follows | (short <= 0), True)).unknown_at(doubtful)
 
 
 def _need_not_follow(context: DriveContext, cells: Cells, short: Floats) -> Flags:
@@ -290,7 +290,7 @@ class SafeGaps:
 @once
 def safe_gaps(context: DriveContext) -> SafeGaps:
     """The distances that ``safe_gap`` compares."""
-    cells = relations.perhaps_ahead(context)
+    cells = relations.possibly_ahead(context)
     gap, (safe, error) = cells.of(relations.gap(context)), safe_distances(context, cells)
     scale = np.maximum(cells.of(context.ego.scale_error[0]), cells.of(context.tracks.scale_error))
     return SafeGaps(cells, gap, safe, error + scale * np.abs(gap))

@@ -172,11 +172,11 @@ def _may_turn(context: DriveContext, row: int) -> bool:
 
 def _leaving_stop(context: DriveContext) -> Truth:
     """The signal of buses that stand at a stop, signal to leave it, and do so soon."""
-    leaves, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
+    leaves, doubtful = np.zeros((2, *context.relevant.shape), dtype=bool)
     buses = context.tracks.of_type("bus").nonzero()[0]
     if len(buses):
-        leaves[buses], unknown[buses] = _buses_leave(context, buses)
-    return Truth.known(leaves).unknown_at(unknown)
+        leaves[buses], doubtful[buses] = _buses_leave(context, buses)
+    return Truth.known(leaves).unknown_at(doubtful)
 
 
 def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Flags]:
@@ -243,12 +243,12 @@ def _about_to_overtake(context: DriveContext) -> Truth:
     soon = np.zeros_like(pulls_out)
     soon[rows] = context.going_along[rows] & context.spans.within(pulls_out[rows], steps)
     soon &= ~those_on_lanes(context, JOINING, soon)
-    unknown, asked = soon.copy(), Cells.at(soon & told)
-    unknown.ravel()[asked.places] = ~_caught_up(context, asked)
+    doubtful, asked = soon.copy(), Cells.at(soon & told)
+    doubtful.ravel()[asked.places] = ~_caught_up(context, asked)
     if lit.any():
-        perhaps = told & lit & _ends_within(context, steps) & ~soon
-        unknown |= perhaps & ~those_on_lanes(context, JOINING, perhaps)
-    return Truth.known(soon & lit).unknown_at(unknown)
+        lost = told & lit & _ends_within(context, steps) & ~soon
+        doubtful |= lost & ~those_on_lanes(context, JOINING, lost)
+    return Truth.known(soon & lit).unknown_at(doubtful)
 
 
 def _caught_up(context: DriveContext, cells: Cells) -> Flags:

@@ -137,9 +137,9 @@ def _speed_difference(context: DriveContext) -> Measured:
 
 def _time_to_collision(context: DriveContext) -> Measured:
     """The time (s) in which ego reaches participants ahead in its lane, at both current speeds."""
-    measured, surely, perhaps = relations.ahead_in_lane(context)
+    measured, ahead = relations.measured_ahead(context), relations.ahead_in_lane(context)
     # Ego runs into no other participants
-    cells, place = relations.perhaps_ahead(context), context.tolerances.place_m
+    cells, place = relations.possibly_ahead(context), context.tolerances.place_m
     closing = cells.of(context.ego_extents.along[0]) - cells.of(context.extents.along)
     errors = context.ego.speed_error[0], context.tracks.speed_error
     wrong = context.tolerances.joint(*map(cells.of, errors))
@@ -151,8 +151,8 @@ def _time_to_collision(context: DriveContext) -> Measured:
         return np.where(runs_into, np.minimum(taken, LONGEST_S), LONGEST_S)
 
     seconds_measured = rounded(seconds(measured, 0.0, closing))
-    soonest = seconds(perhaps, -place, closing + wrong)
-    latest_s = seconds(surely, place, closing - wrong)
+    soonest = seconds(ahead.possible, -place, closing + wrong)
+    latest_s = seconds(ahead.sure, place, closing - wrong)
     found, low, high = (
         in_presences(context, cells, own, LONGEST_S)
         for own in (seconds_measured, *rounded_outward(soonest, latest_s))
@@ -162,8 +162,12 @@ def _time_to_collision(context: DriveContext) -> Measured:
 
 def _precedes(context: DriveContext) -> Flags:
     """The participant next ahead of ego in its lane."""
-    (follows, _, _), cells = relations.ahead_in_lane(context), relations.perhaps_ahead(context)
-    counts = cells.of(follows) & ~cells.of(comes_towards(context)) & cells.of(context.relevant)
+    cells = relations.possibly_ahead(context)
+    counts = (
+        cells.of(relations.measured_ahead(context))
+        & ~cells.of(comes_towards(context))
+        & cells.of(context.relevant)
+    )
     ahead = cells.part(counts.nonzero()[0])
     gap = ahead.of(relations.gap(context))
     return ahead.laid(gap == ahead.of(ahead.least(gap)))
@@ -174,16 +178,16 @@ def _one_between(context: DriveContext) -> Truth:
 
     It is if it is nearer by more than the tolerance of places, and unknown within that.
     """
-    (_, surely, _), cells = relations.ahead_in_lane(context), relations.perhaps_ahead(context)
+    surely, cells = relations.ahead_in_lane(context).sure, relations.possibly_ahead(context)
     drives = context.tracks.of_type("vehicle")[cells.rows] & ~cells.of(comes_towards(context))
     gap, place = cells.of(relations.gap(context)), context.tolerances.place_m
-    nearest, may_be = (
+    nearest, nearest_of_all = (
         cells.of(cells.part(ahead).least(gap.take(ahead)))
         for ahead in ((cells.of(surely) & drives).nonzero()[0], drives.nonzero()[0])
     )
     between = gap > nearest + place
-    unknown = ~between & (gap > may_be - place) & (gap > may_be)
-    return Truth.known(cells.laid(between)).unknown_at(cells.laid(unknown))
+    possible = between | ((gap > nearest_of_all - place) & (gap > nearest_of_all))
+    return Truth(cells.laid(between), cells.laid(possible))
 
 
 participant_signals = SignalPasses(

@@ -62,21 +62,17 @@ def arrivals(
     who arrive together, some laws let only one from the right go first: where one comes from there,
     but only one from the left arrived together with ego, it is unknown, as the two would seem one.
     """
-    known, perhaps = _by_side(context, encounters)
+    known, others = _by_side(context, encounters)
     beside = [flags for name, flags in strangers.items() if name not in FROM_SIDES]
-    perhaps |= np.array([*(strangers[name] for name in FROM_SIDES), np.any(beside, axis=0)])
-    nobody_from_side: Flags = ~np.any(known[-1, :2] | perhaps[-1, :2], axis=0)
+    others |= np.array([*(strangers[name] for name in FROM_SIDES), np.any(beside, axis=0)])
+    nobody_from_side: Flags = ~np.any(known[-1, :2] | others[-1, :2], axis=0)
     known[:-1, 2] &= nobody_from_side
-    perhaps[:-1, 2] &= nobody_from_side
+    others[:-1, 2] &= nobody_from_side
     found: Flags = np.any(known, axis=1)
-    unknown: Flags = np.any(perhaps, axis=1) & ~found
+    possible: Flags = found | np.any(others, axis=1)
     right = FROM_SIDES.index("conflict_from_right")
-    unknown[0] |= found[0] & known[-1, right] & ~known[0, right]
-    truth = Truth.known(found).unknown_at(unknown)
-    return {
-        word: Truth(truth.sure[number], truth.possible[number])
-        for number, word in enumerate(ARRIVALS)
-    }
+    found[0] &= ~known[-1, right] | known[0, right]
+    return {word: Truth(found[k], possible[k]) for k, word in enumerate(ARRIVALS)}
 
 
 def _by_side(context: DriveContext, encounters: Iterable[Encounter]) -> tuple[Flags, Flags]:
