@@ -12,9 +12,10 @@ from rulec.api.pictures import drive_drawing, trace_drawing
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_kinds import expected
-from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, explain_drive
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
+from rulec.extraction.violation_evidence import explain_drive
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.moments.drive_facts import idle_rules

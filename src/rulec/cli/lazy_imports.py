@@ -46,8 +46,9 @@ if TYPE_CHECKING:
     from rulec.cli.usage_help import unknown_verb, ways_out
     from rulec.enforced_limits import enforced, limit_error
     from rulec.extraction.moment_search import DriveMoments, Look, in_recordings, in_traces
-    from rulec.extraction.selection import RequestedDrives, assumption_options
-    from rulec.extraction.traffic_thresholds import threshold_options
+    from rulec.extraction.selection import RequestedDrives
+    from rulec.extraction.traces.assumed_values import assumption_options
+    from rulec.extraction.traffic_thresholds import Thresholds, threshold_options
     from rulec.files import file_messages
     from rulec.fleet.drive_rows import DriveRows, judged_by
     from rulec.fleet.finding_columns import COLUMNS

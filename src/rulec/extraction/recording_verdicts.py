@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -22,16 +22,12 @@ from rulec.monitoring.uncertainty.state_letters.related_facts import related_fac
 from rulec.monitoring.verdict import (
     NotJudged,
     Verdict,
-    Violation,
     agreed_by_type,
     with_law,
 )
 from rulec.recordings.recording import Recording
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import Rows, short_repr
-
-if TYPE_CHECKING:
-    from rulec.monitoring.explain.explanation import Explanation
 
 _MOST_KEPT = 1 << 6
 """Most selections of rules that are kept; beyond this all are dropped."""
@@ -53,18 +49,6 @@ def rulebook_at(rulebook: CompiledRulebook, step_s: float) -> CompiledRulebook:
             raise
         # Each drive will report that it cannot be judged.
         return rulebook
-
-
-def explain_drive(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Explanation:
-    """Explain a violation in a drive, with the numbers that decided its words.
-
-    ``rules`` may have any step that the recording's verdicts may have.
-    """
-    # Explanations, 20 ms: only where something is violated.
-    from rulec.monitoring.explain.explanation import explain
-
-    at_step = rulebook_at(rules, drive.arrays.step_s)
-    return explain(violation, drive.trace, at_step, drive.decided_by)
 
 
 @dataclass(frozen=True, slots=True)

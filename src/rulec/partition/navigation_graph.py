@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from types import ModuleType
 from typing import TYPE_CHECKING, NamedTuple, TypedDict, get_args
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
@@ -132,9 +133,15 @@ def has_way_within(graph: NavigationGraph, bounds: MotionBounds) -> bool:
 
 def within(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
     """The part of a graph that ego can drive within bounds of motion."""
-    from rulec.partition.motion.reachable_graph import reachable  # NumPy, only if needed
+    kept: NavigationGraph = _motion().reachable(graph, bounds)
+    return kept
 
-    return reachable(graph, bounds)
+
+def _motion() -> ModuleType:
+    """What bounds of motion need: NumPy, 0.1 s, which graphs without bounds do not."""
+    from rulec.partition.motion import reachable_graph
+
+    return reachable_graph
 
 
 def _has_way_with(most: float, graph: NavigationGraph) -> bool:
@@ -218,13 +225,11 @@ def _cut(plan: _Plan, times: Timing) -> NavigationGraph:
     if plan.bounds is None:
         steps = edges(layers, onward)
         return _graph(plan, times, places, start=start, layers=layers, steps=steps)
-    from rulec.partition.motion import reachable_graph  # NumPy, only if needed
-
     ego, step_s = plan.scenario.ego, float(times.step)
-    near = reachable_graph.cells_within_reach(layers, ego, plan.bounds, step_s)
+    near = _motion().cells_within_reach(layers, ego, plan.bounds, step_s)
     steps = edges(layers, onward, plan.borders, near)
     graph = _graph(plan, times, places, start=start, layers=layers, steps=steps)
-    return reachable_graph.reachable(graph, plan.bounds)
+    return within(graph, plan.bounds)
 
 
 def _reached(plan: _Plan, times: Timing) -> NavigationGraph | None:

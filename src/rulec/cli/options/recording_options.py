@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -106,13 +107,10 @@ class DrivesOptions:
         "other side of the road.",
     )
 
-    def check_thresholds(self) -> None:
-        """Check thresholds before any work. Raises click.UsageError."""
-        if self.thresholds:
-            try:
-                lazy.threshold_options(self.thresholds)
-            except ValueError as problem:
-                raise click.UsageError(_sentence(problem)) from None
+    def read_thresholds(self) -> lazy.Thresholds:
+        """The thresholds. Raises click.UsageError."""
+        with _refused():
+            return lazy.threshold_options(self.thresholds)
 
     def requested(
         self, egos: tuple[str, ...], vocabulary: Vocabulary | None
@@ -124,17 +122,9 @@ class DrivesOptions:
         """
         if self.assumed and vocabulary is None:
             raise click.UsageError("--assume needs a rulebook that has these words: --rulebook R")
-        texts = [text for text in self.assumed if text != "defaults"]
-        try:
-            return lazy.RequestedDrives(
-                egos,
-                lazy.threshold_options(self.thresholds),
-                {} if vocabulary is None else lazy.assumption_options(texts, vocabulary),
-                self.as_recorded,
-                len(texts) < len(self.assumed),
-            )
-        except ValueError as problem:
-            raise click.UsageError(_sentence(problem)) from None
+        thresholds = self.read_thresholds()
+        values, defaults = ({}, False) if vocabulary is None else _assumed(self.assumed, vocabulary)
+        return lazy.RequestedDrives(egos, thresholds, values, self.as_recorded, defaults)
 
 
 egos_option = click.option(
@@ -172,16 +162,23 @@ def assumptions(
     ends: Ending | None, texts: Sequence[str], vocabulary: Vocabulary
 ) -> lazy.Assumptions:
     """Assumptions about traces. Raises click.UsageError."""
-    values: Mapping[str, Value] = {}
-    if named := [text for text in texts if text != "defaults"]:
-        try:
-            values = lazy.assumption_options(named, vocabulary)
-        except ValueError as problem:
-            raise click.UsageError(_sentence(problem)) from None
-    return lazy.Assumptions(ends, values, len(named) < len(texts))
+    return lazy.Assumptions(ends, *_assumed(texts, vocabulary))
 
 
-def _sentence(problem: ValueError) -> str:
-    """The message of an error as a sentence, without a second mark after a question mark."""
-    text = str(problem)
-    return text if text.endswith("?") else f"{text}."
+def _assumed(texts: Sequence[str], vocabulary: Vocabulary) -> tuple[Mapping[str, Value], bool]:
+    """The values to assume, and whether missing ones get their default."""
+    named = [text for text in texts if text != "defaults"]
+    with _refused():
+        values = lazy.assumption_options(named, vocabulary) if named else {}
+    return values, len(named) < len(texts)
+
+
+@contextmanager
+def _refused() -> Iterator[None]:
+    """Refuse a text of an option in which something is wrong. Raises click.UsageError."""
+    try:
+        yield
+    except ValueError as problem:
+        # A question mark ends a sentence, too
+        text = str(problem)
+        raise click.UsageError(text if text.endswith("?") else f"{text}.") from None

@@ -139,7 +139,8 @@ def command(
     """
     inputs = input_files(files)
     refuse_overwriting(to, inputs.paths)
-    drives.check_thresholds()
+    if drives.thresholds:
+        drives.read_thresholds()
     references = list(dict.fromkeys(rulebooks_named(rulebooks)))
     own = [read_machines(name, at) for name in references]
     refuse_unmatched(patterns, own)
