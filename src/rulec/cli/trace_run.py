@@ -5,16 +5,15 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from io import UnsupportedOperation
 from pathlib import Path
 from typing import IO, Any, cast
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.standard_input import standard_input
-from rulec.cli.verdict_outputs import VerdictOutputs
+from rulec.cli.verdict_run import VerdictRun
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import with_place
 from rulec.diagnostics.fault_messages import contained, fault_of
@@ -22,11 +21,9 @@ from rulec.files.read_files import opened
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import Items, rulebook_for, step_of, verify_items
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.findings.verdict_finding import RecordingFindings, VerdictFinding
 from rulec.report.text.console import page_width, print_remark, progress
 from rulec.report.verdicts import verdict_report
-from rulec.report.verdicts.batch_table import BatchTally
 from rulec.report.verdicts.state_times import StateTimes
 from rulec.resource_limits import REFUSED, BudgetSpentError
 from rulec.trace import Trace
@@ -45,23 +42,13 @@ _GOES_ON = (
 )
 
 
-@dataclass
-class TraceRun:
-    """Judges the traces of files, and sums up the results.
+@dataclass(kw_only=True)
+class TraceRun(VerdictRun):
+    """Judges the traces of files; the first ``to_explain`` violations of each are explained."""
 
-    The first ``to_explain`` violations of each file are explained.
-    """
-
-    rules: CompiledRulebook
-    to: VerdictOutputs
-    complaints: Complaints
     to_explain: int
     every_part: bool
-    total: BatchTally = field(default_factory=BatchTally)
-    judged: bool = False
-    complete: bool = True
     opened: bool = False
-    open_hard: bool = False
     pending: bool = False
 
     def __post_init__(self) -> None:
@@ -133,6 +120,7 @@ class TraceRun:
 
     def _not_judged(self, file: str, answer: NotJudged, findings: list[VerdictFinding]) -> None:
         self.total.not_judged += 1
+        self.complete = False
         self.complaints.add(answer.error)
         if self.to.wants_lines:
             self.to.line(lazy.verdict_json.not_judged_as_json(answer, self.rules.name))

@@ -171,7 +171,8 @@ def command(
         raise click.UsageError("--exposure is for all rules of a rulebook: leave out --rule.")
     with verdict_outputs(to, books[0], with_rows=exposure, strict=asked.strict) as outputs:
         complaints = Complaints()
-        results = []
+        results: list[list[lazy.VerdictRun]] = []
+        failed = False
         for rules, rows_of, reference in zip(books, own, references, strict=True):
             if rules.law or len(books) > 1:
                 headline = lazy.verdict_report.headline(rules, page_width())
@@ -180,15 +181,18 @@ def command(
                 outputs.to_rows = _to_rows(rows_of, rules.name, request)
             named = ["-r", reference, *(("--at", at) if at else ())]
             own_request = replace(request, drives=_speaking_of(rules, books, drives))
-            results.append(_judge(own_request, rules, outputs, complaints, named))
+            runs = _judge(own_request, rules, outputs, complaints, named)
+            for run in runs:
+                failed |= run.has_failed(strict=asked.strict)
+            results.append(runs)
         if len(books) > 1:
-            tallies = [(rules, result.total) for rules, result in zip(books, results, strict=True)]
+            totals = [lazy.BatchTally.sum_of(run.total for run in runs) for runs in results]
+            tallies = list(zip(books, totals, strict=True))
             outputs.text(f"\n{lazy.as_columns(tallies, page_width())}")
     complaints.close()
-    return ExitStatus.after(
-        answered=all(result.judged and result.complete for result in results),
-        failed=any(result.violated for result in results),
-    )
+    answered = all(any(run.judged for run in runs) for runs in results)
+    is_complete = all(run.complete for runs in results for run in runs)
+    return ExitStatus.after(answered=answered and is_complete, failed=failed)
 
 
 def _speaking_of(
@@ -225,20 +229,6 @@ class VerifyRequest:
     recorded: RecordingOptions
     jobs: Jobs
     n_explained: int
-
-
-@dataclass
-class VerifyResult:
-    """Sums over files judged by one rulebook.
-
-    ``judged``: whether any trace was judged, or there is no rule; ``complete``: whether each was
-    judged; ``violated``: whether hard rules are violated or, with ``--strict``, open.
-    """
-
-    total: lazy.BatchTally
-    judged: bool = False
-    complete: bool = True
-    violated: bool = False
 
 
 def _check_inputs(request: VerifyRequest) -> None:
@@ -278,73 +268,43 @@ def _judge(
     outputs: VerdictOutputs,
     complaints: Complaints,
     named: Sequence[str],
-) -> VerifyResult:
+) -> list[lazy.VerdictRun]:
     """Judge all files by one rulebook; the options that it was ``named`` by are for messages."""
-    result = VerifyResult(lazy.BatchTally())
+    asked, drives = request.asked, request.drives
+    runs: list[lazy.VerdictRun] = []
     if request.recordings or request.inputs.problems:
-        recorded = _judge_recordings(request, rules, outputs, complaints, named)
-        _include(result, recorded, strict=request.asked.strict)
-        result.complete &= recorded.complete
+        to_rows = outputs.to_rows
+        source = (*request.recordings, *named, *as_typed(drives, request.recorded))
+        settings = lazy.JudgeSettings(
+            rules,
+            drives.requested(asked.egos, rules.vocabulary),
+            request.recorded.source("-"),
+            to_explain=request.n_explained,
+            every_part=asked.every_part,
+            layout=lazy.AnswerLayout(page_width(), asked.why, source)
+            if outputs.wants_text
+            else None,
+            findings=outputs.wants_findings,
+            to_line=lazy.recording_line if outputs.wants_lines else None,
+            to_rows=None if to_rows is None else to_rows.of_answer,
+            idle_rules=lazy.idle_rules if asked.why else None,
+        )
+        recorded = lazy.RecordingRun(rules, outputs, complaints, settings=settings)
+        for problem in request.inputs.problems:
+            recorded.not_read(problem)
+        if request.recordings:
+            recorded.files(request.recordings, request.jobs)
+        runs.append(recorded)
     if request.traces:
-        traced = _judge_traces(request, rules, outputs, complaints)
-        _include(result, traced, strict=request.asked.strict)
-        result.complete &= traced.complete and not traced.total.not_judged
-    return result
-
-
-def _judge_recordings(
-    request: VerifyRequest,
-    rules: lazy.CompiledRulebook,
-    outputs: VerdictOutputs,
-    complaints: Complaints,
-    named: Sequence[str],
-) -> lazy.RecordingRun:
-    to_rows = outputs.to_rows
-    given = as_typed(request.drives, request.recorded)
-    source = (*request.recordings, *named, *given)
-    settings = lazy.JudgeSettings(
-        rules,
-        request.drives.requested(request.asked.egos, rules.vocabulary),
-        request.recorded.source("-"),
-        to_explain=request.n_explained,
-        every_part=request.asked.every_part,
-        layout=lazy.AnswerLayout(page_width(), request.asked.why, source)
-        if outputs.wants_text
-        else None,
-        findings=outputs.wants_findings,
-        to_line=lazy.recording_line if outputs.wants_lines else None,
-        to_rows=None if to_rows is None else to_rows.of_answer,
-        idle_rules=lazy.idle_rules if request.asked.why else None,
-    )
-    run = lazy.RecordingRun(settings, outputs, complaints)
-    for problem in request.inputs.problems:
-        run.not_read(problem)
-    if request.recordings:
-        run.files(request.recordings, request.jobs)
-    return run
-
-
-def _judge_traces(
-    request: VerifyRequest,
-    rules: lazy.CompiledRulebook,
-    outputs: VerdictOutputs,
-    complaints: Complaints,
-) -> lazy.TraceRun:
-    assumed = assumptions(request.asked.ends, request.drives.assumed, rules.vocabulary)
-    step = None if request.asked.step_s is None else float(request.asked.step_s)
-    n_explained, every_part = request.n_explained, request.asked.every_part
-    run = lazy.TraceRun(rules, outputs, complaints, n_explained, every_part)
-    run.files(request.traces, request.recorded.trace_format, replace(assumed, step_s=step))
-    return run
-
-
-def _include(result: VerifyResult, run: lazy.RecordingRun | lazy.TraceRun, *, strict: bool) -> None:
-    is_broken = bool(run.total.outcomes["violated"])
-    if strict and run.open_hard and not is_broken:
-        click.echo("note: a hard rule is open, which counts as violated by `--strict`", err=True)
-    result.violated |= is_broken or (strict and run.open_hard)
-    result.judged |= run.judged
-    result.total.include(run.total)
+        assumed = assumptions(asked.ends, drives.assumed, rules.vocabulary)
+        step = None if asked.step_s is None else float(asked.step_s)
+        n_explained, every_part = request.n_explained, asked.every_part
+        traced = lazy.TraceRun(
+            rules, outputs, complaints, to_explain=n_explained, every_part=every_part
+        )
+        traced.files(request.traces, request.recorded.trace_format, replace(assumed, step_s=step))
+        runs.append(traced)
+    return runs
 
 
 def _to_rows(rules: lazy.CompiledRulebook, name: str, request: VerifyRequest) -> lazy.DriveRows:
