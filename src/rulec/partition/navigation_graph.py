@@ -83,15 +83,9 @@ def navigation_graph(
     R0608 for an unknown partition, adjacency or extent, R0770 for invalid bounds, R0718 for too
     many obstacles and layers.
     """
-    plan, times = _planned(
-        scenario,
-        partition=partition,
-        adjacency=adjacency,
-        extent=extent,
-        step_s=step_s,
-        horizon_s=horizon_s,
-        bounds=bounds,
-    )
+    options: GraphOptions = {"partition": partition, "adjacency": adjacency, "extent": extent}
+    options |= {"step_s": step_s, "horizon_s": horizon_s, "bounds": bounds}
+    plan, times = _planned(scenario, options)
     if step_s is not None or scenario.account is None:
         return _cut(plan, times)
     free = step_that_leaves_room(plan.scenario, times, plan.partition, plan.extent)
@@ -121,7 +115,7 @@ def has_way(scenario: Scenario, **options: Unpack[GraphOptions]) -> bool:
     Only cells on paths from the start are computed, and no margins. Raises RulecError as
     ``navigation_graph`` does.
     """
-    plan, times = _planned(scenario, **options)
+    plan, times = _planned(scenario, options)
     graph = _reached(plan, times)
     return graph is not None and (plan.bounds is None or has_way_within(graph, plan.bounds))
 
@@ -173,19 +167,11 @@ class _Plan:
         return MOST_BORDERS if self.partition == "fine" and self.bounds is not None else 1
 
 
-def _planned(
-    scenario: Scenario,
-    *,
-    partition: PartitionName | None = None,
-    adjacency: cell_links.AdjacencyName = "touch",
-    extent: ExtentName | None = None,
-    step_s: float | None = None,
-    horizon_s: float | None = None,
-    bounds: MotionBounds | str | None = None,
-) -> tuple[_Plan, Timing]:
-    own = scenario.ego.bounds
-    bounds = read_bounds(bounds, own) if isinstance(bounds, str) else bounds or own
-    partition = partition or "paper"
+def _planned(scenario: Scenario, options: GraphOptions) -> tuple[_Plan, Timing]:
+    own, given = scenario.ego.bounds, options.get("bounds")
+    bounds = read_bounds(given, own) if isinstance(given, str) else given or own
+    partition, adjacency = options.get("partition") or "paper", options.get("adjacency", "touch")
+    extent, step_s = options.get("extent"), options.get("step_s")
     if extent is None:
         extent = "clearance" if bounds is not None and scenario.account is not None else "lane"
     if bounds not in (None, own):
@@ -203,6 +189,7 @@ def _planned(
                 help=did_you_mean(str(name), known),
             )
     step_s = scenario.step_s if step_s is None else step_s
+    horizon_s = options.get("horizon_s")
     if horizon_s is None:
         horizon_s = scenario.horizon_s
         if scenario.account is not None and scenario.account.map_ends:
