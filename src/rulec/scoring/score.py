@@ -26,9 +26,8 @@ from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.garbage_collection import no_garbage_collection
 from rulec.monitoring.verdict import NotJudged, RuleFor, Violation, rule_for
 from rulec.recordings.recording import Participant
-from rulec.scoring.candidate_score import CandidateScore, lost_candidate
+from rulec.scoring.candidate_score import CandidateScore, lost_candidate, without_drives
 from rulec.scoring.charges import CandidateCharges, CandidateScores, forget_reasons, open_of
-from rulec.scoring.lazy_scores import without_drives
 from rulec.scoring.rescoring import kept_since, opened_by, rescored, verdicts_of
 from rulec.scoring.scores import Scores
 from rulec.scoring.scoring_messages import BAD_CANDIDATES
