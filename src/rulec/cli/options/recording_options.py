@@ -11,7 +11,8 @@ import click
 
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import RenamedOption, input_format_option
-from rulec.cli.options.shared_options import asked, finite, gathered
+from rulec.cli.options.shared_options import finite
+from rulec.cli.options.verb_class import gathered, option
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_format import RecordingSource
 from rulec.trace import Value
@@ -28,7 +29,7 @@ _RECORDING_FORMATS = tuple(form.name for form in FORMATS)
 class RecordingOptions:
     """How to read recorded traffic, or traces."""
 
-    map_path: Path | None = asked(
+    map_path: Path | None = option(
         "--map",
         cls=RenamedOption,
         former=["--net"],
@@ -37,12 +38,12 @@ class RecordingOptions:
         help="The map, for recorded traffic that contains no roads.  [default: for SUMO data, "
         "the net that the file names, or the only .net.xml file beside it]",
     )
-    scenario_id: str | None = asked(
+    scenario_id: str | None = option(
         "--scenario",
         metavar="ID",
         help="Read only this recording of a file that contains several.",
     )
-    frame_rate: float | None = asked(
+    frame_rate: float | None = option(
         "--frame-rate",
         metavar="HZ",
         type=click.FloatRange(min=0, min_open=True),
@@ -50,11 +51,9 @@ class RecordingOptions:
         help="Frames a second of recorded traffic: of a table with the column `frame`, or to "
         "confirm time steps that speeds contradict.",
     )
-    input_format: str | None = asked(
-        make=lambda _: input_format_option(
-            _RECORDING_FORMATS,
-            "recorded traffic, one of `rulec list formats`.  [default: detected from the file]",
-        )
+    input_format: str | None = input_format_option(
+        _RECORDING_FORMATS,
+        "recorded traffic, one of `rulec list formats`.  [default: detected from the file]",
     )
 
     @property
@@ -72,13 +71,11 @@ class RecordingOptions:
 class RecordingOrTraceOptions(RecordingOptions):
     """The same for files that may also be traces."""
 
-    input_format: str | None = asked(
-        make=lambda _: input_format_option(
-            (*_RECORDING_FORMATS, *TRACE_FORMATS),
-            "traces (jsonl, csv or parquet) or of recorded traffic (one of `rulec list formats`).  "
-            "[default: detected from the file; for traces its ending, else jsonl]",
-            former=["--format"],
-        )
+    input_format: str | None = input_format_option(
+        (*_RECORDING_FORMATS, *TRACE_FORMATS),
+        "traces (jsonl, csv or parquet) or of recorded traffic (one of `rulec list formats`).  "
+        "[default: detected from the file; for traces its ending, else jsonl]",
+        former=["--format"],
     )
 
 
@@ -86,7 +83,7 @@ class RecordingOrTraceOptions(RecordingOptions):
 class DrivesOptions:
     """How the drives of a recording become traces, and what is assumed about traces."""
 
-    assumed: tuple[str, ...] = asked(
+    assumed: tuple[str, ...] = option(
         "--assume",
         multiple=True,
         metavar="NAME=VALUE",
@@ -94,13 +91,13 @@ class DrivesOptions:
         "one, in recorded traffic always. Or `defaults`: missing values get their default, and "
         "every trace is complete.",
     )
-    thresholds: tuple[str, ...] = asked(
+    thresholds: tuple[str, ...] = option(
         "--threshold",
         multiple=True,
         metavar="NAME=NUMBER",
         help="Recorded traffic: set a threshold used to derive words, such as near_m=200.",
     )
-    as_recorded: bool = asked(
+    as_recorded: bool = option(
         "--as-recorded",
         is_flag=True,
         help="Recorded traffic: do not mirror it, even if the rulebook's traffic keeps to the "
@@ -127,17 +124,16 @@ class DrivesOptions:
         return lazy.RequestedDrives(egos, thresholds, values, self.as_recorded, defaults)
 
 
-egos_option = click.option(
+egos_option = option(
     "--ego",
-    "egos",
     multiple=True,
     metavar="ID",
     help="Recorded traffic: use only this vehicle's drive.  [default: every vehicle's]",
 )
 
-recording_options = gathered("recorded", RecordingOptions)
-recording_or_trace_options = gathered("recorded", RecordingOrTraceOptions)
-drives_options = gathered("drives", DrivesOptions)
+recording_options = gathered(RecordingOptions)
+recording_or_trace_options = gathered(RecordingOrTraceOptions)
+drives_options = gathered(DrivesOptions)
 
 _NAMES = {
     "assumed": "--assume",

@@ -18,7 +18,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shared_options import refuse_unmatched, rules_on_topic
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import option, verb
 from rulec.cli.output import (
     answer_lines,
     books_and_rule,
@@ -38,63 +38,52 @@ from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
 
 
-@click.command(cls=Verb)
-@shared.rulebooks_argument("RULEBOOK... [RULE]", required=False)
-@click.option(
-    "--all",
-    "every",
-    is_flag=True,
-    help="Compare every pair of the named rulebooks, or of all available ones.",
-)
-@shared.rules_option("Compare only rules that match PATTERN")
-@shared.topic_option("Show what any number of RULEBOOKs say on a topic")
-@click.option(
-    "-v", "--verbose", is_flag=True, help="Show traces of every rule, and all sentences of a topic."
-)
-@click.option(
-    "--pair",
-    "paired",
-    multiple=True,
-    metavar="A=B",
-    help="Compare rule A of the first with rule B of the second. May be given several times.",
-)
-@shared.step_option(
-    "The time step, in s, on which rules with bounds in seconds are compared.  [default: one "
-    "that divides the steps of their examples]",
-)
-@shared.number_option(
-    "--witnesses",
-    "n_witnesses",
-    "Show up to N traces for every difference, each for a different reason.",
-    least=1,
-    most=100,
-    default=3,
-)
-@output_options(
-    endings_of("text", "markdown", "json", "html", "csv"),
-    "the comparison: text, Markdown, JSON, an HTML page, or CSV with a row per rule",
-)
-@click.option(
-    "--witness",
-    type=click.Path(dir_okay=False, allow_dash=True),
-    metavar="FILE",
-    help="Write the traces that one rulebook forbids and the other allows to FILE, as JSON Lines.",
-)
-@shared.no_cache_option
-@shared.at_option
+@verb
 def command(
-    rulebooks: tuple[str, ...],
     *,
-    every: bool,
-    patterns: tuple[str, ...],
-    topic: str | None,
-    verbose: bool,
-    paired: tuple[str, ...],
-    step_s: Fraction | None,
-    n_witnesses: int,
-    to: Output,
-    witness: str | None,
-    at: str,
+    rulebooks: tuple[str, ...] = shared.rulebooks_argument("RULEBOOK... [RULE]", required=False),
+    every: bool = option(
+        "--all",
+        is_flag=True,
+        help="Compare every pair of the named rulebooks, or of all available ones.",
+    ),
+    patterns: tuple[str, ...] = shared.rules_option("Compare only rules that match PATTERN"),
+    topic: str | None = shared.topic_option("Show what any number of RULEBOOKs say on a topic"),
+    verbose: bool = option(
+        "-v",
+        "--verbose",
+        is_flag=True,
+        help="Show traces of every rule, and all sentences of a topic.",
+    ),
+    paired: tuple[str, ...] = option(
+        "--pair",
+        multiple=True,
+        metavar="A=B",
+        help="Compare rule A of the first with rule B of the second. May be given several times.",
+    ),
+    step_s: Fraction | None = shared.step_option(
+        "The time step, in s, on which rules with bounds in seconds are compared.  [default: one "
+        "that divides the steps of their examples]",
+    ),
+    n_witnesses: int = shared.number_option(
+        "--witnesses",
+        "Show up to N traces for every difference, each for a different reason.",
+        least=1,
+        most=100,
+        default=3,
+    ),
+    to: Output = output_options(
+        endings_of("text", "markdown", "json", "html", "csv"),
+        "the comparison: text, Markdown, JSON, an HTML page, or CSV with a row per rule",
+    ),
+    witness: str | None = option(
+        "--witness",
+        type=click.Path(dir_okay=False, allow_dash=True),
+        metavar="FILE",
+        help="Write the traces that one rulebook forbids and the other allows to FILE, as JSON "
+        "Lines.",
+    ),
+    at: str = shared.no_cache_and(shared.at_option),
 ) -> int:
     """Compare two RULEBOOKs: which rules of the first are stricter or laxer than the second's.
 

@@ -24,7 +24,7 @@ from rulec.cli.options.recording_options import (
     recording_or_trace_options,
 )
 from rulec.cli.options.shell_completion import complete_codes
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import answer_lines, put_answer, width_of
 from rulec.cli.verb_table import FORMER, VERBS
 from rulec.diagnostics import RulecError, any_of, first_of, nearest_name
@@ -46,32 +46,26 @@ _SLIP = 3
 """The most letters by which a misspelt definition is longer or shorter."""
 
 
-@click.command(cls=Verb)
-@click.argument(
-    "names", nargs=-1, metavar="[CODE|WORD]... [FILE]...", shell_complete=complete_codes
-)
-@click.option("--all", "every", is_flag=True, help="Explain every code.")
-@egos_option
-@drives_options
-@recording_or_trace_options
-@shared.rulebook_option(
-    "a word has the meaning of one rulebook",
-    "The rulebook (name or source) by which a WORD is read in FILE...  [default: road's own words]",
-    required=False,
-)
-@output_options(
-    endings_of("full", "json", "markdown"),
-    "the explanation: text, JSON or Markdown",
-)
+@verb
 def command(
-    names: tuple[str, ...],
-    egos: tuple[str, ...],
-    rulebook: str | None,
-    to: Output,
     *,
-    every: bool,
-    drives: DrivesOptions,
-    recorded: RecordingOptions,
+    names: tuple[str, ...] = argument(
+        nargs=-1, metavar="[CODE|WORD]... [FILE]...", shell_complete=complete_codes
+    ),
+    every: bool = option("--all", is_flag=True, help="Explain every code."),
+    egos: tuple[str, ...] = egos_option,
+    drives: DrivesOptions = drives_options,
+    recorded: RecordingOptions = recording_or_trace_options,
+    rulebook: str | None = shared.rulebook_option(
+        "a word has the meaning of one rulebook",
+        "The rulebook (name or source) by which a WORD is read in FILE...  [default: road's own "
+        "words]",
+        required=False,
+    ),
+    to: Output = output_options(
+        endings_of("full", "json", "markdown"),
+        "the explanation: text, JSON or Markdown",
+    ),
 ) -> int:
     """Explain each CODE, such as R0104: what it means, with a bad example and its correction.
 

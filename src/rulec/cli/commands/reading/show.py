@@ -19,7 +19,7 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shared_options import rules_on_topic
 from rulec.cli.options.shell_completion import complete_rules
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import books_and_rule, errors_told, put_answer, rulebooks_named, width_of
 from rulec.diagnostics import first_of, named, nearest_name
 from rulec.report.text.console import print_remark
@@ -30,33 +30,29 @@ _MOST_NAMED = 6
 """The most rules listed where one has to be chosen."""
 
 
-@click.command(cls=Verb)
-@shared.rulebook_argument
-@click.argument("others", nargs=-1, metavar="[RULEBOOK...] [RULE]", shell_complete=complete_rules)
-@click.option(
-    "--automaton",
-    type=click.Choice(["text", "dot", "svg"]),
-    help="Show only the rule's automaton: as text, for Graphviz, or as a picture.",
-)
-@output_options(
-    endings_of("text", "json", "dot", "svg"),
-    "the rule: text, JSON, or its automaton for Graphviz or as a picture",
-    alias="automaton",
-)
-@shared.rules_option("Show only rules that match PATTERN")
-@shared.topic_option("Show only rules on a topic")
-@click.option("--all", "every", is_flag=True, help="Show every rule in plain English, not a list.")
-@shared.at_option
+@verb
 def command(
-    rulebook: str,
-    others: tuple[str, ...],
     *,
-    patterns: tuple[str, ...],
-    topic: str | None,
-    every: bool,
-    automaton: str | None,
-    to: Output,
-    at: str,
+    rulebook: str = shared.rulebook_argument,
+    others: tuple[str, ...] = argument(
+        nargs=-1, metavar="[RULEBOOK...] [RULE]", shell_complete=complete_rules
+    ),
+    automaton: str | None = option(
+        "--automaton",
+        type=click.Choice(["text", "dot", "svg"]),
+        help="Show only the rule's automaton: as text, for Graphviz, or as a picture.",
+    ),
+    to: Output = output_options(
+        endings_of("text", "json", "dot", "svg"),
+        "the rule: text, JSON, or its automaton for Graphviz or as a picture",
+        alias="automaton",
+    ),
+    patterns: tuple[str, ...] = shared.rules_option("Show only rules that match PATTERN"),
+    topic: str | None = shared.topic_option("Show only rules on a topic"),
+    every: bool = option(
+        "--all", is_flag=True, help="Show every rule in plain English, not a list."
+    ),
+    at: str = shared.at_option,
 ) -> int:
     """Show a RULE of a RULEBOOK: in plain English, as a formula, as an automaton, with examples.
 

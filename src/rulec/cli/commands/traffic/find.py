@@ -31,7 +31,7 @@ from rulec.cli.options.recording_options import (
     recording_or_trace_options,
 )
 from rulec.cli.options.standard_input import not_standard_input, standard_input
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import answer_lines, output_stream, print_written
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.fault_messages import contained
@@ -46,46 +46,37 @@ from rulec.settings import search_path
 FORMATS = {**endings_of("text", "json"), **TABLES}
 
 
-@click.command(cls=Verb)
-@click.argument("formula")
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@click.option(
-    "-u",
-    "--use",
-    "vocabulary",
-    default="",
-    metavar="NAME",
-    callback=not_standard_input("a vocabulary is found by its name; give a rulebook, as `-r -`"),
-    help="The vocabulary that the formula uses.  [default: road, or the rulebook's]",
-)
-@shared.rulebook_option(
-    "a formula is in the words of one rulebook",
-    "A rulebook (name or source) whose words, definitions and parameters the formula may use, in "
-    "addition to those of --use.",
-    required=False,
-)
-@click.option(
-    "--sure",
-    is_flag=True,
-    help="List only moments that are certain, whatever the unknown values are.",
-)
-@egos_option
-@drives_options
-@recording_or_trace_options
-@output_options(FORMATS, "the moments")
-@shared.at_option
+@verb
 def command(
-    formula: str,
-    files: tuple[str, ...],
-    vocabulary: str,
-    rulebook: str | None,
-    egos: tuple[str, ...],
-    at: str,
-    to: Output,
     *,
-    sure: bool,
-    drives: DrivesOptions,
-    recorded: RecordingOptions,
+    formula: str = argument(),
+    files: tuple[str, ...] = argument(nargs=-1, required=True, metavar="FILE..."),
+    vocabulary: str = option(
+        "-u",
+        "--use",
+        default="",
+        metavar="NAME",
+        callback=not_standard_input(
+            "a vocabulary is found by its name; give a rulebook, as `-r -`"
+        ),
+        help="The vocabulary that the formula uses.  [default: road, or the rulebook's]",
+    ),
+    rulebook: str | None = shared.rulebook_option(
+        "a formula is in the words of one rulebook",
+        "A rulebook (name or source) whose words, definitions and parameters the formula may use, "
+        "in addition to those of --use.",
+        required=False,
+    ),
+    sure: bool = option(
+        "--sure",
+        is_flag=True,
+        help="List only moments that are certain, whatever the unknown values are.",
+    ),
+    egos: tuple[str, ...] = egos_option,
+    drives: DrivesOptions = drives_options,
+    recorded: RecordingOptions = recording_or_trace_options,
+    to: Output = output_options(FORMATS, "the moments"),
+    at: str = shared.at_option,
 ) -> int:
     """List the moments at which FORMULA holds in FILE..., recorded traffic or traces.
 

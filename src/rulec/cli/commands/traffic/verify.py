@@ -30,7 +30,7 @@ from rulec.cli.options.recording_options import (
     recording_or_trace_options,
 )
 from rulec.cli.options.shared_options import refuse_unmatched, with_rules_like
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, gathered, option, verb
 from rulec.cli.output import read_machines, rulebooks_named
 from rulec.cli.verdict_outputs import FORMATS, VerdictOutputs, verdict_outputs
 from rulec.recordings.recording_files import check_readable, is_recording
@@ -47,75 +47,62 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 class VerifyOptions:
     """How traces and drives are judged, and what is said of them."""
 
-    n_explained: int | None = shared.asked(
+    n_explained: int | None = shared.number_option(
         "--explain",
-        make=shared.number_option,
-        help_text="Explain the first N violations of each file state by state.  [default: 1 for a "
+        "Explain the first N violations of each file state by state.  [default: 1 for a "
         "single file of traces, 0 with --json]",
     )
-    every_part: bool = shared.asked(
+    every_part: bool = option(
         "--every-part",
         is_flag=True,
         help="Show every part of the formula and every state in explanations, however large the "
         "table.",
     )
-    why: bool = shared.asked(
+    why: bool = option(
         "--why",
         is_flag=True,
         help="Say of every rule whether something or nothing was found, it had no opportunity to "
         "be violated, or it is open or not judged, and which words are missing.",
     )
-    strict: bool = shared.asked(
+    strict: bool = option(
         "--strict",
         is_flag=True,
         help="Count open hard rules as violated: those undecided because values are unknown or the "
         "trace is cut.",
     )
-    ends: Ending | None = shared.asked(make=lambda _: shared.end_option)
-    step_s: Fraction | None = shared.asked(
-        make=lambda _: shared.step_option(
-            "For traces: use S seconds as the time step. A trace whose own step differs by more "
-            "than 5 % (more than the jitter of a logger's clock) is not judged."
-        )
+    ends: Ending | None = shared.end_option
+    step_s: Fraction | None = shared.step_option(
+        "For traces: use S seconds as the time step. A trace whose own step differs by more "
+        "than 5 % (more than the jitter of a logger's clock) is not judged."
     )
-    egos: tuple[str, ...] = shared.asked(make=lambda _: egos_option)
+    egos: tuple[str, ...] = egos_option
 
 
-@click.command(cls=Verb)
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@shared.rulebooks_option(
-    shared.RULEBOOK_HELP + " May be given several times, for verdicts side by side."
-)
-@shared.rules_option("Judge only by rules that match PATTERN")
-@shared.gathered("asked", VerifyOptions)
-@drives_options
-@recording_or_trace_options
-@shared.jobs_option("Judge N recordings, or parts of a long one, in parallel")
-@output_options(
-    FORMATS,
-    "the answer",
-    multiple=True,
-    instead="Pictures and pages are drawn by `rulec draw`.",
-)
-@click.option(
-    "--exposure",
-    is_flag=True,
-    help="In .jsonl, .csv and .parquet also write a row per drive, and per rule with how often "
-    "there was an opportunity to violate it, as input for `rulec rates`.",
-)
-@shared.at_option
+@verb
 def command(
-    files: tuple[str, ...],
-    rulebooks: tuple[str, ...],
-    patterns: tuple[str, ...],
-    asked: VerifyOptions,
-    to: tuple[Output, ...],
-    at: str,
-    jobs: Jobs,
     *,
-    exposure: bool,
-    drives: DrivesOptions,
-    recorded: RecordingOptions,
+    files: tuple[str, ...] = argument(nargs=-1, required=True, metavar="FILE..."),
+    rulebooks: tuple[str, ...] = shared.rulebooks_option(
+        shared.RULEBOOK_HELP + " May be given several times, for verdicts side by side."
+    ),
+    patterns: tuple[str, ...] = shared.rules_option("Judge only by rules that match PATTERN"),
+    asked: VerifyOptions = gathered(VerifyOptions),
+    drives: DrivesOptions = drives_options,
+    recorded: RecordingOptions = recording_or_trace_options,
+    jobs: Jobs = shared.jobs_option("Judge N recordings, or parts of a long one, in parallel"),
+    to: tuple[Output, ...] = output_options(
+        FORMATS,
+        "the answer",
+        multiple=True,
+        instead="Pictures and pages are drawn by `rulec draw`.",
+    ),
+    exposure: bool = option(
+        "--exposure",
+        is_flag=True,
+        help="In .jsonl, .csv and .parquet also write a row per drive, and per rule with how often "
+        "there was an opportunity to violate it, as input for `rulec rates`.",
+    ),
+    at: str = shared.at_option,
 ) -> int:
     """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
 

@@ -15,7 +15,7 @@ from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, RenamedOption, endings_of, output_options
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import option, verb
 from rulec.cli.output import print_lost, put_answer, sources_of_rulebooks, width_of
 from rulec.cli.watching import watch as watch_sources
 from rulec.cli.watching import watch_option
@@ -26,49 +26,43 @@ from rulec.rulebook.allowances import without_allowed
 from rulec.settings import search_path
 
 
-@click.command(cls=Verb)
-@shared.rulebooks_argument("[RULEBOOK]...", required=False)
-@shared.rules_option(
-    "Run only examples whose RULE or RULE/LABEL matches PATTERN (RULE/NUMBER if it has no label)",
-    former=["--run"],
-)
-@output_options(endings_of("full", "json", "junit"), "the outcomes: text, JSON, or JUnit XML")
-@click.option("--fail-on-empty", is_flag=True, help="Fail if there are no examples to run.")
-@click.option(
-    "--coverage",
-    "with_coverage",
-    is_flag=True,
-    help="List the edges of each rule's automaton that no example takes, and the atoms that are "
-    "never both true and false in examples.",
-)
-@click.option(
-    "--fail-under",
-    "percent",
-    cls=RenamedOption,
-    former=["--threshold"],
-    type=click.FloatRange(0, 100),
-    callback=shared.finite,
-    metavar="PERCENT",
-    help="Fail if the examples cover less than this of a rulebook's own rules; implies --coverage.",
-)
-@click.option(
-    "-v", "--verbose", is_flag=True, help="List every example, and all that coverage misses."
-)
-@shared.jobs_option("Test N rulebooks in parallel")
-@watch_option
-@shared.at_option
+@verb
 def command(
-    rulebooks: tuple[str, ...],
     *,
-    patterns: tuple[str, ...],
-    to: Output,
-    fail_on_empty: bool,
-    with_coverage: bool,
-    percent: float | None,
-    verbose: bool,
-    jobs: Jobs,
-    watch: bool,
-    at: str,
+    rulebooks: tuple[str, ...] = shared.rulebooks_argument("[RULEBOOK]...", required=False),
+    patterns: tuple[str, ...] = shared.rules_option(
+        "Run only examples whose RULE or RULE/LABEL matches PATTERN (RULE/NUMBER if it has no "
+        "label)",
+        former=["--run"],
+    ),
+    to: Output = output_options(
+        endings_of("full", "json", "junit"), "the outcomes: text, JSON, or JUnit XML"
+    ),
+    fail_on_empty: bool = option(
+        "--fail-on-empty", is_flag=True, help="Fail if there are no examples to run."
+    ),
+    with_coverage: bool = option(
+        "--coverage",
+        is_flag=True,
+        help="List the edges of each rule's automaton that no example takes, and the atoms that "
+        "are never both true and false in examples.",
+    ),
+    percent: float | None = option(
+        "--fail-under",
+        cls=RenamedOption,
+        former=["--threshold"],
+        type=click.FloatRange(0, 100),
+        callback=shared.finite,
+        metavar="PERCENT",
+        help="Fail if the examples cover less than this of a rulebook's own rules; implies "
+        "--coverage.",
+    ),
+    verbose: bool = option(
+        "-v", "--verbose", is_flag=True, help="List every example, and all that coverage misses."
+    ),
+    jobs: Jobs = shared.jobs_option("Test N rulebooks in parallel"),
+    watch: bool = watch_option,
+    at: str = shared.at_option,
 ) -> int:
     """Run the accept and reject examples of every RULEBOOK.
 
