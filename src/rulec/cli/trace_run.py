@@ -8,16 +8,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from io import UnsupportedOperation
-from pathlib import Path
 from typing import IO, Any, cast
 
 from rulec.cli import lazy_imports as lazy
-from rulec.cli.options.standard_input import standard_input
+from rulec.cli.options.standard_input import input_stream
 from rulec.cli.verdict_run import VerdictRun
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import with_place
 from rulec.diagnostics.fault_messages import contained, fault_of
-from rulec.files.read_files import opened
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import Items, rulebook_for, step_of, verify_items
 from rulec.monitoring.verdict import NotJudged, Verdict
@@ -169,14 +167,11 @@ class TraceRun(VerdictRun):
         self, file: str, form: Format | None, assumed: Assumptions
     ) -> Iterator[AnswerWithFacts]:
         try:
-            if file == "-":
-                stream = standard_input()
+            place = SourceLocation(file)
+            with input_stream(file) as (stream, name), contained("not judged", place):
                 self.opened = True
-                yield from self._in_stream(stream, "standard input", form or "jsonl", assumed)
-                return
-            with opened(Path(file)) as stream, contained("not judged", SourceLocation(file)):
-                self.opened = True
-                yield from self._in_stream(stream, file, form or format_of(file), assumed)
+                form = form or (format_of(file) if name == file else "jsonl")
+                yield from self._in_stream(stream, name, form, assumed)
         except BudgetSpentError:
             raise
         except RulecError as error:

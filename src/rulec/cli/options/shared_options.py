@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from fractions import Fraction
@@ -101,17 +101,6 @@ def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
             wrong = f"for a moment in seconds there is `--at-time {value}`"
         raise click.BadParameter(f"`{value}` is no date: {wrong}")
     return value
-
-
-def only_sources(rulebooks: Iterable[str], lack: str) -> None:
-    """Refuse compiled rulebooks, with a reason such as ``"cannot be audited"``.
-
-    Raises:
-        click.UsageError: a rulebook is compiled.
-    """
-    compiled = next((rulebook for rulebook in rulebooks if rulebook.endswith(".json")), None)
-    if compiled is not None:
-        raise click.UsageError(f"`{compiled}` is compiled and {lack}; give its source")
 
 
 rulebook_argument = argument(callback=read_as_file, shell_complete=complete_rulebooks)

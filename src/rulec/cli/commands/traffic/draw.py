@@ -35,7 +35,7 @@ from rulec.cli.options.scenario_options import (
 from rulec.cli.options.shared_options import refuse_unmatched, with_rules_like
 from rulec.cli.options.standard_input import file_named
 from rulec.cli.options.verb_class import VerbGroup, argument, asking, gathered, option
-from rulec.cli.output import output_stream, print_written, read_machines
+from rulec.cli.output import put_picture, read_machines
 from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.diagnostics.fault_messages import contained
 from rulec.recordings.recording_files import read_recording
@@ -121,7 +121,7 @@ def trace(
                 f"trace `{drawn.id}` has no object `{item}`; it has {named(list(drawn.objects))}."
             )
     used = _only(lazy.rulebook_for_trace(drawn, rules), patterns)
-    _write(lazy.trace_drawing(drawn, used, only, patterns, every_row=every_row), to)
+    put_picture(lazy.trace_drawing(drawn, used, only, patterns, every_row=every_row), to)
 
 
 @command.command()
@@ -172,7 +172,7 @@ def drive(
     verdicts = rulec.verify_recording(recording, rules, wanted)
     with contained("not drawn", SourceLocation(file)):
         drawing = lazy.drive_drawing(verdicts, ego if part else "", kept, at_s)
-    _write(drawing, to, theme)
+    put_picture(drawing, to, theme)
 
 
 @command.command()
@@ -197,7 +197,7 @@ def scene(
     last = len(graph.layers) - 1
     if layers and max(layers) > last:
         raise click.UsageError(f"There is no layer {max(layers)}; they are 0 to {last}.")
-    _write(lazy.scene_drawing(graph, maneuvers, maneuver, layers, judged.number or 1), to)
+    put_picture(lazy.scene_drawing(graph, maneuvers, maneuver, layers, judged.number or 1), to)
 
 
 @command.command()
@@ -208,7 +208,7 @@ def graph(*, judged: JudgedScene = gathered(JudgedScene), to: Output = _picture_
     With a rulebook, the edges of satisfying maneuvers are drawn differently from those of rejected
     ones, and the cheapest satisfying maneuver is highlighted.
     """
-    _write(lazy.graph_drawing(*_judged(judged)), to)
+    put_picture(lazy.graph_drawing(*_judged(judged)), to)
 
 
 def _trace(file: str, trace_id: str | None, form: lazy.Format | None) -> Trace:
@@ -255,10 +255,3 @@ def _judged(judged: JudgedScene) -> Judged:
             why += ", and fewer were found that ego can drive"
         raise click.UsageError(f"There is no maneuver {number}: {why}.")
     return maneuvers.graph, maneuvers, maneuver
-
-
-def _write(drawing: lazy.Drawing, to: Output, theme: Theme = "auto") -> None:
-    data = lazy.picture_formats.as_bytes(drawing, to.form, to.path, theme)
-    with output_stream(to) as (stream, _):
-        stream.write(data)
-    print_written(to.path, to)

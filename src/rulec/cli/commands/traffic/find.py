@@ -30,12 +30,11 @@ from rulec.cli.options.recording_options import (
     egos_option,
     recording_or_trace_options,
 )
-from rulec.cli.options.standard_input import not_standard_input, standard_input
+from rulec.cli.options.standard_input import input_stream, not_standard_input
 from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import answer_lines, output_stream, print_written
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.fault_messages import contained
-from rulec.files.read_files import opened
 from rulec.recordings.recording_files import is_recording, read_recordings
 from rulec.recordings.recording_inputs import input_files
 from rulec.report.findings.diagnostics_text import Complaints
@@ -170,16 +169,9 @@ def moments_of(
                     recordings = read_recordings(replace(source, path=Path(path)))
                     yield from lazy.in_recordings(recordings, query, wanted, path, look)
                     continue
-                if is_stream:
-                    chunks = lazy.read_chunks(standard_input(), "standard input", form or "jsonl")
-                    yield from lazy.in_traces(
-                        chain.from_iterable(chunks), query, assumed, path, look
-                    )
-                    continue
-                with opened(Path(path)) as stream:
-                    chunks = lazy.read_chunks(stream, path, form or lazy.format_of(path))
-                    yield from lazy.in_traces(
-                        chain.from_iterable(chunks), query, assumed, path, look
-                    )
+                with input_stream(path) as (stream, name):
+                    own = form or ("jsonl" if is_stream else lazy.format_of(path))
+                    traces = chain.from_iterable(lazy.read_chunks(stream, name, own))
+                    yield from lazy.in_traces(traces, query, assumed, path, look)
         except RulecError as error:
             yield error

@@ -11,7 +11,7 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.standard_input import not_standard_input
 from rulec.cli.options.verb_class import argument, option, verb
-from rulec.cli.output import output_stream, print_written, put_answer, width_of
+from rulec.cli.output import put_answer, put_picture, width_of
 from rulec.diagnostics.fault_messages import contained
 
 GROUPS = ("rulebook", "country", "road", "source", "file", "recording")
@@ -76,12 +76,7 @@ def command(
     with contained("no rates"):
         rates = lazy.rates_of_findings(files, by, confidence=confidence, seed=seed)
     if to.form in PICTURES:
-        data = lazy.picture_formats.as_bytes(
-            lazy.rates_drawing(rates, f"per_{per}"), to.form, to.path
-        )
-        with output_stream(to) as (stream, _):
-            stream.write(data)
-        print_written(to.path, to)
+        put_picture(lazy.rates_drawing(rates, f"per_{per}"), to)
         return
     renderers = {
         "json": lazy.rates_table.as_json,
