@@ -135,6 +135,22 @@ recording_options = gathered(RecordingOptions)
 recording_or_trace_options = gathered(RecordingOrTraceOptions)
 drives_options = gathered(DrivesOptions)
 
+
+@dataclass(frozen=True, kw_only=True)
+class TrafficOptions:
+    """Which vehicles' drives, and how recorded traffic or traces are read."""
+
+    egos: tuple[str, ...] = egos_option
+    drives: DrivesOptions = drives_options
+    recorded: RecordingOptions = recording_or_trace_options
+
+    def requested(self, vocabulary: Vocabulary) -> lazy.RequestedDrives:
+        """The drives, whose words are of a vocabulary. Raises click.UsageError."""
+        return self.drives.requested(self.egos, vocabulary)
+
+
+traffic_options = gathered(TrafficOptions)
+
 _NAMES = {
     "assumed": "--assume",
     "thresholds": "--threshold",

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from itertools import chain
@@ -22,14 +23,7 @@ from rulec.cli.options.output_options import (
     output_options,
     refuse_overwriting,
 )
-from rulec.cli.options.recording_options import (
-    DrivesOptions,
-    RecordingOptions,
-    assumptions,
-    drives_options,
-    egos_option,
-    recording_or_trace_options,
-)
+from rulec.cli.options.recording_options import TrafficOptions, assumptions, traffic_options
 from rulec.cli.options.standard_input import input_stream, not_standard_input
 from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import answer_lines, output_stream, print_written
@@ -71,9 +65,7 @@ def command(
         is_flag=True,
         help="List only moments that are certain, whatever the unknown values are.",
     ),
-    egos: tuple[str, ...] = egos_option,
-    drives: DrivesOptions = drives_options,
-    recorded: RecordingOptions = recording_or_trace_options,
+    traffic: TrafficOptions = traffic_options,
     to: Output = output_options(FORMATS, "the moments"),
     at: str = shared.at_option,
 ) -> int:
@@ -103,19 +95,11 @@ def command(
         search_path=search_path(),
         at=at,
     )
-    complaints = Complaints()
-    for problem in inputs.problems:
-        complaints.add(problem)
+    complaints = Complaints(inputs.problems)
     tally = lazy.moment_rows.MomentTally()
-    complete = not inputs.problems
 
     def found() -> Iterator[lazy.DriveMoments]:
-        nonlocal complete
-        for drive in moments_of(query, inputs.paths, egos, drives, recorded):
-            if isinstance(drive, RulecError):
-                complete = False
-                complaints.add(drive)
-                continue
+        for drive in moments_of(query, inputs.paths, traffic, complaints):
             if sure:
                 kept = [moment for moment in drive.moments if moment.holds == "surely"]
                 drive = replace(drive, moments=kept)
@@ -139,39 +123,43 @@ def command(
             writer.close()
     print_written(to.path, to)
     complaints.close()
-    return ExitStatus.after(answered=complete, failed=False)
+    return ExitStatus.after(answered=not complaints, failed=False)
 
 
 def moments_of(
     query: FormulaQuery,
-    paths: tuple[str, ...],
-    egos: tuple[str, ...],
-    drives: DrivesOptions,
-    recorded: RecordingOptions,
-    *,
+    paths: Sequence[str],
+    traffic: TrafficOptions,
+    complaints: Complaints,
     look: lazy.Look | None = None,
-) -> Iterator[lazy.DriveMoments | RulecError]:
-    """The moments of all drives of all files, and the errors of those that could not be read.
+) -> Iterator[lazy.DriveMoments]:
+    """The moments of all drives of all files, or whatever else one is to ``look`` for.
 
-    Or whatever else one is to ``look`` for.
+    ``complaints`` gets the errors of what could not be read.
     """
     look = look or lazy.moments
-    form = recorded.trace_format
+    recorded, form = traffic.recorded, traffic.recorded.trace_format
     named = recorded.input_format is not None
-    wanted = drives.requested(egos, query.vocabulary)
-    source = recorded.source("-")
-    assumed = assumptions(None, drives.assumed, query.vocabulary)
+    wanted, source = traffic.requested(query.vocabulary), recorded.source("-")
+    assumed = assumptions(None, traffic.drives.assumed, query.vocabulary)
     for path in paths:
         is_stream = path == STANDARD_OUTPUT
+        found: Iterable[lazy.DriveMoments | RulecError] = ()
         try:
-            with contained("not searched", SourceLocation(path)):
+            with ExitStack() as stack:
+                stack.enter_context(contained("not searched", SourceLocation(path)))
                 if form is None and (named or (not is_stream and is_recording(path))):
                     recordings = read_recordings(replace(source, path=Path(path)))
-                    yield from lazy.in_recordings(recordings, query, wanted, path, look)
-                    continue
-                with input_stream(path) as (stream, name):
+                    found = lazy.in_recordings(recordings, query, wanted, path, look)
+                else:
+                    stream, name = stack.enter_context(input_stream(path))
                     own = form or ("jsonl" if is_stream else lazy.format_of(path))
                     traces = chain.from_iterable(lazy.read_chunks(stream, name, own))
-                    yield from lazy.in_traces(traces, query, assumed, path, look)
+                    found = lazy.in_traces(traces, query, assumed, path, look)
+                for drive in found:
+                    if isinstance(drive, RulecError):
+                        complaints.add(drive)
+                    else:
+                        yield drive
         except RulecError as error:
-            yield error
+            complaints.add(error)

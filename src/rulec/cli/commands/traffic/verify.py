@@ -21,13 +21,11 @@ from rulec.cli.options.output_options import (
     refuse_overwriting,
 )
 from rulec.cli.options.recording_options import (
-    DrivesOptions,
     RecordingOptions,
+    TrafficOptions,
     as_typed,
     assumptions,
-    drives_options,
-    egos_option,
-    recording_or_trace_options,
+    traffic_options,
 )
 from rulec.cli.options.shared_options import refuse_unmatched, with_rules_like
 from rulec.cli.options.verb_class import argument, gathered, option, verb
@@ -75,7 +73,8 @@ class VerifyOptions:
         "For traces: use S seconds as the time step. A trace whose own step differs by more "
         "than 5 % (more than the jitter of a logger's clock) is not judged."
     )
-    egos: tuple[str, ...] = egos_option
+    traffic: TrafficOptions = traffic_options
+    jobs: Jobs = shared.jobs_option("Judge N recordings, or parts of a long one, in parallel")
 
 
 @verb
@@ -87,9 +86,6 @@ def command(
     ),
     patterns: tuple[str, ...] = shared.rules_option("Judge only by rules that match PATTERN"),
     asked: VerifyOptions = gathered(VerifyOptions),
-    drives: DrivesOptions = drives_options,
-    recorded: RecordingOptions = recording_or_trace_options,
-    jobs: Jobs = shared.jobs_option("Judge N recordings, or parts of a long one, in parallel"),
     to: tuple[Output, ...] = output_options(
         FORMATS,
         "the answer",
@@ -126,15 +122,15 @@ def command(
     """
     inputs = input_files(files)
     refuse_overwriting(to, inputs.paths)
-    if drives.thresholds:
-        drives.read_thresholds()
+    if asked.traffic.drives.thresholds:
+        asked.traffic.drives.read_thresholds()
     references = list(dict.fromkeys(rulebooks_named(rulebooks)))
     own = [read_machines(name, at) for name in references]
     refuse_unmatched(patterns, own)
     books = _told_apart([with_rules_like(book, patterns) for book in own], references)
     if len(books) > 1 and STANDARD_OUTPUT in inputs.paths:
         raise click.UsageError("standard input is read once; give a file, or one rulebook")
-    recordings = _recordings(inputs, recorded)
+    recordings = _recordings(inputs, asked.traffic.recorded)
     is_json_alone = to == (Output(STANDARD_OUTPUT, "json"),)
     is_small = len(inputs.paths) == len(books) == 1 and not recordings
     usual = 1 if is_small and not is_json_alone else 0
@@ -143,9 +139,7 @@ def command(
         recordings=recordings,
         traces=[path for path in inputs.paths if path not in recordings],
         asked=asked,
-        drives=drives,
-        recorded=recorded,
-        jobs=jobs,
+        traffic=asked.traffic,
         n_explained=usual if asked.n_explained is None else asked.n_explained,
     )
     _check_inputs(request)
@@ -167,7 +161,7 @@ def command(
             if exposure:
                 outputs.to_rows = _to_rows(rows_of, rules.name, request)
             named = ["-r", reference, *(("--at", at) if at else ())]
-            own_request = replace(request, drives=_speaking_of(rules, books, drives))
+            own_request = replace(request, traffic=_speaking_of(rules, books, asked.traffic))
             runs = _judge(own_request, rules, outputs, complaints, named)
             for run in runs:
                 failed |= run.has_failed(strict=asked.strict)
@@ -183,8 +177,8 @@ def command(
 
 
 def _speaking_of(
-    rules: lazy.CompiledRulebook, books: Sequence[lazy.CompiledRulebook], drives: DrivesOptions
-) -> DrivesOptions:
+    rules: lazy.CompiledRulebook, books: Sequence[lazy.CompiledRulebook], traffic: TrafficOptions
+) -> TrafficOptions:
     """The options without assumptions about words that another of the rulebooks knows alone."""
 
     def is_others(text: str) -> bool:
@@ -192,7 +186,8 @@ def _speaking_of(
         knowing = [book for book in books if name in book.vocabulary.declarations]
         return bool(knowing) and all(book is not rules for book in knowing)
 
-    return replace(drives, assumed=tuple([x for x in drives.assumed if not is_others(x)]))
+    assumed = tuple([text for text in traffic.drives.assumed if not is_others(text)])
+    return replace(traffic, drives=replace(traffic.drives, assumed=assumed))
 
 
 def _told_apart(
@@ -212,22 +207,21 @@ class VerifyRequest:
     recordings: Sequence[str]
     traces: Sequence[str]
     asked: VerifyOptions
-    drives: DrivesOptions
-    recorded: RecordingOptions
-    jobs: Jobs
+    traffic: TrafficOptions
     n_explained: int
 
 
 def _check_inputs(request: VerifyRequest) -> None:
     """Refuse options that do not apply to the files. Raises click.UsageError, RulecError."""
-    only_drives = replace(request.drives, assumed=()), replace(request.recorded, input_format=None)
-    option = "--ego" if request.asked.egos else next(as_typed(*only_drives), None)
-    if option and not request.recordings and not request.inputs.problems:
+    drives, recorded = request.traffic.drives, request.traffic.recorded
+    only_drives = replace(drives, assumed=()), replace(recorded, input_format=None)
+    given = "--ego" if request.traffic.egos else next(as_typed(*only_drives), None)
+    if given and not request.recordings and not request.inputs.problems:
         for path in request.inputs.paths:
             if path != STANDARD_INPUT:
                 check_readable(Path(path))
         raise click.UsageError(
-            f"{option} is for recorded traffic, and no file looks like it; add `--input-format "
+            f"{given} is for recorded traffic, and no file looks like it; add `--input-format "
             "tracks`, or another of `rulec list formats`, to learn what is missing"
         )
     if request.asked.ends is not None and request.recordings:
@@ -257,15 +251,15 @@ def _judge(
     named: Sequence[str],
 ) -> list[lazy.VerdictRun]:
     """Judge all files by one rulebook; the options that it was ``named`` by are for messages."""
-    asked, drives = request.asked, request.drives
+    asked, traffic = request.asked, request.traffic
     runs: list[lazy.VerdictRun] = []
     if request.recordings or request.inputs.problems:
         to_rows = outputs.to_rows
-        source = (*request.recordings, *named, *as_typed(drives, request.recorded))
+        source = (*request.recordings, *named, *as_typed(traffic.drives, traffic.recorded))
         settings = lazy.JudgeSettings(
             rules,
-            drives.requested(asked.egos, rules.vocabulary),
-            request.recorded.source("-"),
+            traffic.requested(rules.vocabulary),
+            traffic.recorded.source("-"),
             to_explain=request.n_explained,
             every_part=asked.every_part,
             layout=lazy.AnswerLayout(page_width(), asked.why, source)
@@ -280,16 +274,16 @@ def _judge(
         for problem in request.inputs.problems:
             recorded.not_read(problem)
         if request.recordings:
-            recorded.files(request.recordings, request.jobs)
+            recorded.files(request.recordings, asked.jobs)
         runs.append(recorded)
     if request.traces:
-        assumed = assumptions(asked.ends, drives.assumed, rules.vocabulary)
+        assumed = assumptions(asked.ends, traffic.drives.assumed, rules.vocabulary)
         step = None if asked.step_s is None else float(asked.step_s)
         n_explained, every_part = request.n_explained, asked.every_part
         traced = lazy.TraceRun(
             rules, outputs, complaints, to_explain=n_explained, every_part=every_part
         )
-        traced.files(request.traces, request.recorded.trace_format, replace(assumed, step_s=step))
+        traced.files(request.traces, traffic.recorded.trace_format, replace(assumed, step_s=step))
         runs.append(traced)
     return runs
 
@@ -299,10 +293,9 @@ def _to_rows(rules: lazy.CompiledRulebook, name: str, request: VerifyRequest) ->
 
     Its hash remains that of the rulebook itself, by which findings of other calls have it.
     """
-    wanted = request.drives.requested(request.asked.egos, rules.vocabulary)
-    return lazy.DriveRows(
-        rules, replace(lazy.judged_by(rules, wanted, request.asked.ends or ""), rulebook=name)
-    )
+    wanted = request.traffic.requested(rules.vocabulary)
+    by = lazy.judged_by(rules, wanted, request.asked.ends or "")
+    return lazy.DriveRows(rules, replace(by, rulebook=name))
 
 
 def _recordings(inputs: InputFiles, recorded: RecordingOptions) -> list[str]:
