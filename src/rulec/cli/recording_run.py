@@ -62,7 +62,7 @@ class RecordingRun(VerdictRun):
         file = file or (place.file if place is not None else "")
         if file not in self.unread:
             self.unread.append(file)
-            if self.to.wants_findings:
+            if self.to.writers:
                 recording = lazy.not_judged_file(file, error, self.rules.name)
                 if self.to.to_rows is not None:
                     row = self.to.to_rows.of_nothing({"file": file}, recording.failure)
@@ -77,7 +77,7 @@ class RecordingRun(VerdictRun):
         self.judged |= bool(judged.tally.judged_in) or not self.rules.rules
         self.complete &= bool(judged.tally.judged)
         self.open_hard |= bool(judged.tally.open_hard)
-        if self.to.wants_text:
+        if self.to.texts:
             is_short = several and self.settings.idle_rules is None
             first = in_short(judged, page_width()) if is_short else judged.answer
             self.to.text("\n".join([first, *judged.explained]))

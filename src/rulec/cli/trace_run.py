@@ -74,7 +74,7 @@ class TraceRun(VerdictRun):
                     answer = NotJudged(answer.trace, fault)
                     self._not_judged(file, answer, findings)
                 rows += self._rows(file, answer, facts, findings[before:])
-            if self.to.wants_findings:
+            if self.to.writers:
                 found = (tuple(judged_traces), tuple(findings), tuple(rows))
                 self.to.add(RecordingFindings(file, "", *found))
         if self.total.judged or self.opened:
@@ -120,9 +120,9 @@ class TraceRun(VerdictRun):
         self.total.not_judged += 1
         self.complete = False
         self.complaints.add(answer.error)
-        if self.to.wants_lines:
+        if self.to.lines:
             self.to.line(lazy.verdict_json.not_judged_as_json(answer, self.rules.name))
-        if self.to.wants_findings:
+        if self.to.writers:
             findings.append(lazy.not_judged_trace(file, answer, self.rules.name))
 
     def _judged(self, file: str, answer: Any, left: int, findings: list[VerdictFinding]) -> int:
@@ -135,7 +135,7 @@ class TraceRun(VerdictRun):
         self.open_hard |= any(result.strength == "hard" for result in verdict.open)
         self.judged |= len(verdict.not_judged) < max(len(self._names), 1)
         says = bool(verdict.violations or verdict.open or verdict.not_judged)
-        if not says and not self.to.wants_lines:
+        if not says and not self.to.lines:
             return 0
         used = rulebook_for(traces, place, self.rules)
         explained: list[lazy.Explanation] = []
@@ -145,9 +145,9 @@ class TraceRun(VerdictRun):
             explained = [
                 lazy.explain(violation, trace, used) for violation in verdict.violations[:left]
             ]
-        if self.to.wants_lines:
+        if self.to.lines:
             self.to.line(lazy.verdict_json.as_json(verdict, used, explained))
-        if says and self.to.wants_text:
+        if says and self.to.texts:
             most, width = verdict_report.MOST_VIOLATIONS, page_width()
             times = StateTimes(step_s=step_of(traces, place))
             tables: list[str] = []
@@ -159,7 +159,7 @@ class TraceRun(VerdictRun):
             self.to.text(text)
             shown = verdict.open[:most]
             self.pending |= any("not over" in result.because for result in shown)
-        if self.to.wants_findings:
+        if self.to.writers:
             findings += lazy.trace_findings(file, traces[place], verdict, used, explained)
         return len(explained)
 

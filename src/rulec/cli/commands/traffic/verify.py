@@ -262,11 +262,9 @@ def _judge(
             traffic.recorded.source("-"),
             to_explain=request.n_explained,
             every_part=asked.every_part,
-            layout=lazy.AnswerLayout(page_width(), asked.why, source)
-            if outputs.wants_text
-            else None,
-            findings=outputs.wants_findings,
-            to_line=lazy.recording_line if outputs.wants_lines else None,
+            layout=lazy.AnswerLayout(page_width(), asked.why, source) if outputs.texts else None,
+            findings=bool(outputs.writers),
+            to_line=lazy.recording_line if outputs.lines else None,
             to_rows=None if to_rows is None else to_rows.of_answer,
             idle_rules=lazy.idle_rules if asked.why else None,
         )
