@@ -53,7 +53,7 @@ def proven(
     looked_at: set[tuple[int, ...]] = set()
     unproved: list[Maneuver] = []
     promised: dict[tuple[int, ...], float] = {}
-    ways = WaySearch(product, graph, search.bounds)
+    ways = GuidedSearch(product, graph, search.bounds)
     for way in islice(ways.guided(MOST_BOUNDS + MORE_BOUNDS * n), MOST_TRIED * n):
         if len(maneuvers) >= n and way.promises >= maneuvers[n - 1].cost:
             break
@@ -136,7 +136,7 @@ def least_promised(
     product: Product[Memory], graph: NavigationGraph, bounds: WayBounds
 ) -> float | None:
     """The least driving cost of all accepted paths; None if that takes too long to find."""
-    first = next(WaySearch(product, graph, bounds, driving_only=True).guided(MOST_BOUNDS), None)
+    first = next(GuidedSearch(product, graph, bounds, driving_only=True).guided(MOST_BOUNDS), None)
     return None if first is None else max(first.promises - ALIKE, 0.0)
 
 
@@ -177,7 +177,7 @@ class _Part(Generic[Memory]):
         return None if bound is None else replace(self, bound=bound, is_known=True)
 
 
-class WaySearch(Generic[Memory]):
+class GuidedSearch(Generic[Memory]):
     """A search for a product's paths by the lower bounds of their costs.
 
     Paths whose bound shows that they cannot be driven are left out. With ``driving_only`` changes
