@@ -23,7 +23,7 @@ import os, signal, sys, time
 from pathlib import Path
 if "--multiprocessing-fork" in sys.orig_argv:
     from rulec.batch import recording_judge
-    judge = recording_judge.judge
+    judge = recording_judge.judged_file
     def odd(settings, path):
         marker = Path(path + "." + str(os.getpid()))
         if "odd" in path and len(list(marker.parent.glob("*.xml.*"))) < LEAST:
@@ -31,7 +31,7 @@ if "--multiprocessing-fork" in sys.orig_argv:
             yield from list(judge(settings, path))[:1] if settings.to_line else ()
             DEED
         yield from judge(settings, path)
-    recording_judge.judge = odd
+    recording_judge.judged_file = odd
 """
 """A module that Python imports when it starts: workers do something odd with one file."""
 

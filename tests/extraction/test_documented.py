@@ -11,7 +11,7 @@ from rulec.extraction.signals.map.line_signals import line_signals
 from rulec.extraction.signals.map.map_signals import map_signals
 from rulec.extraction.signals.participants.following_signals import following_signals
 from rulec.extraction.signals.participants.participant_signals import participant_signals
-from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
+from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.extraction.traffic_thresholds import LEAST_S, USUAL
 from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.trace.vocabulary_projection import RECORDED_UNITS, UNTOLD_VALUES
@@ -120,8 +120,8 @@ def test_a_recording_tells_what_files_of_its_format_can_tell():
     drives = selected_drives(found, RequestedDrives(), "some.xml")
     # Where there is neither a bus nor what runs on rails nobody has to see their doors and tracks.
     of_nobody = {"conflict_with_rail", "boarding", "leaving_stop"}
-    assert told_words(drives) - of_nobody <= TELLABLE_WORDS["commonroad"]
-    assert {"speed", "limit", "ego_mass"} & told_words(drives) == {"speed"}
+    assert drives.told_words() - of_nobody <= TELLABLE_WORDS["commonroad"]
+    assert {"speed", "limit", "ego_mass"} & drives.told_words() == {"speed"}
 
 
 def test_every_word_is_one_of_a_vocabulary_and_numbers_have_its_unit():

@@ -34,23 +34,17 @@ LATE = {
     "diagnostics/fault_messages.py": (1, MESSAGE),
     "diagnostics/phrases.py": (1, MESSAGE),
     "enforced_limits.py": (1, "NumPy is loaded before memory is limited"),
-    "extraction/recording_parts.py": (1, "only where a source states errors"),
-    "extraction/recording_verdicts.py": (1, EXPLAINED),
-    "extraction/selection.py": (1, MESSAGE),
-    "extraction/tellable_words.py": (1, NUMPY),
     "files/read_files.py": (1, FORMAT),
     "fleet/runs/fleet_run.py": (2, OPTIONAL),
     "resources.py": (1, MESSAGE),
     "lazy_loading.py": (1, "ast takes 3 ms, not for `rulec --version`"),
-    "monitoring/batch/joined/joined_traces.py": (1, UNKNOWN),
     "monitoring/batch/stacked/stacked_run.py": (1, UNKNOWN),
     "monitoring/batch/verify_arrays.py": (1, "engines for states, which few recordings need"),
-    "monitoring/online/running_monitor.py": (1, UNKNOWN),
-    "monitoring/rulebook_edition.py": (1, FORMAT),
     "monitoring/unfitting_values.py": (2, MESSAGE),
+    "monitoring/rulebook_edition.py": (1, FORMAT),
     "partition/cell_graph.py": (1, OPTIONAL),
     "partition/cells/cell_model.py": (1, "Shapely takes 0.1 s, and is rarely needed"),
-    "partition/navigation_graph.py": (2, NUMPY),
+    "partition/navigation_graph.py": (1, NUMPY),
     "planning/maneuvers.py": (1, UNKNOWN),
     "planning/rule_instances.py": (1, UNKNOWN),
     "rates/exact_intervals.py": (1, OPTIONAL),
@@ -59,23 +53,19 @@ LATE = {
     "report/text/console.py": (2, "rich takes 40 ms, only for a terminal"),
     "report/text/html_page.py": (1, "markdown-it and Pygments take 30 ms, only for pages"),
     "rulebook/batch/batch_check.py": (1, PARSER),
-    "rulebook/batch/batch_format.py": (2, PARSER),
+    "rulebook/batch/batch_format.py": (1, PARSER),
     "rulebook/batch/shipped_lock.py": (1, "rulebooks take 50 ms, not for each check"),
     "rulebook/names/word_meanings.py": (1, MESSAGE),
     "rulebook/reading/rulebook_reader.py": (1, PARSER),
-    "rulebook/vocabulary_phrases.py": (
-        1,
-        "patterns of sentences take 10 ms, not for phrases alone",
-    ),
     "scenario/scenario_files.py": (1, NUMPY),
     "syntax/parser.py": (1, MESSAGE),
     "trace/formats/arrow/parquet.py": (1, OPTIONAL),
-    "trace/formats/json_lines.py": (2, NUMPY),
-    "vocabulary/pint_units.py": (2, "Pint takes 0.2 s, only for units that are not listed"),
+    "trace/formats/json_lines.py": (1, NUMPY),
+    "vocabulary/pint_units.py": (1, "Pint takes 0.2 s, only for units that are not listed"),
 }
 """Module -> how many imports stand in its functions, and why."""
 
-MOST_LATE = 56
+MOST_LATE = 45
 """A bound that only falls."""
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from rulec import RulecError, compile_rulebook, find_maneuvers, parse_rulebook
 from rulec.planning.ranking import proven
 from rulec.planning.ranking.cheapest import cheapest
-from rulec.planning.ranking.proven import ALIKE, beam_ways, guided_ways, with_trajectory
+from rulec.planning.ranking.proven import ALIKE, GuidedSearch, with_trajectory
 from rulec.scenario import (
     ConstantAcceleration,
     Ego,
@@ -61,7 +61,7 @@ def test_no_path_is_cheaper_than_it_promises(scene):
     if found is None:
         return
     search, graph = found._search, found.graph
-    ways = islice(guided_ways(found.product, graph, search.bounds, 10_000), 400)
+    ways = islice(GuidedSearch(found.product, graph, search.bounds).guided(10_000), 400)
     promises = {way.maneuver.nodes: way.promises for way in ways}
     for one in islice(cheapest(found.product), 400):
         driven = with_trajectory(one, graph, search)
@@ -89,8 +89,9 @@ def test_a_beam_as_wide_as_the_graph_loses_nothing(scene):
     if found is None:
         return
     every, bounds = found.product, found._search.bounds
-    guided = {way.maneuver.nodes for way in guided_ways(every, found.graph, bounds, 10_000)}
-    beam = list(beam_ways(every, found.graph, bounds, 10_000))
+    ways = GuidedSearch(every, found.graph, bounds)
+    guided = {way.maneuver.nodes for way in ways.guided(10_000)}
+    beam = list(ways.beam(10_000))
     assert {way.maneuver.nodes for way in beam} == guided
     assert [way.promises for way in beam] == sorted(way.promises for way in beam)
 

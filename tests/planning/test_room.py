@@ -9,7 +9,7 @@ from rulec.diagnostics import RulecError
 from rulec.planning.product.graph_product import explore, largest_product
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.product.possible_instances import HARD, SOFT, instances
-from rulec.planning.ranking.least_violating import front, ranked, with_penalty
+from rulec.planning.ranking.least_violating import Ranking
 from rulec.planning.ranking.penalties import ranks_of
 from support.generators.random_graphs import graphs
 from support.generators.random_priorities import rulebooks
@@ -44,12 +44,12 @@ def test_a_product_needs_room_for_its_nodes(graph, rulebook):
 @given(GRAPHS, rulebooks(), st.integers(0, 30))
 def test_with_little_room_a_ranking_is_the_same_or_none(graph, rulebook, most):
     found = node_transformers(graph, instances(graph, rulebook, strengths=(*HARD, *SOFT)))
-    ranks = ranks_of(rulebook)
+    ranking = Ranking(found, ranks_of(rulebook))
 
     def best():
-        return [(one, with_penalty(found, ranks, one).accepted) for one in front(found, ranks)]
+        return [(one, ranking.with_penalty(one).accepted) for one in ranking.front()]
 
-    for work in (best, lambda: list(ranked(found, ranks))):
+    for work in (best, lambda: list(ranking.ranked())):
         assert with_room(most, work) in (work(), REFUSED)
         assert with_room(0, work) == (REFUSED if work() else [])
 

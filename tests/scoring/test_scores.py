@@ -11,7 +11,7 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.tracks import tracks
 from rulec.extraction.tracks.matching import lanelet_graph
 from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged, Violation
-from rulec.scoring.judged_anew import verdicts_of
+from rulec.scoring.rescoring import verdicts_of
 from rulec.scoring.score import score
 from rulec.scoring.scores import CandidateScore, Scores
 from rulec.scoring.traffic_world import TrafficWorld

@@ -8,7 +8,7 @@ import pytest
 import rulec
 from rulec.batch import recording_judge
 from rulec.batch.jobs import Jobs, LostTask
-from rulec.batch.recording_judge import JudgedRecording, JudgeSettings, judge_with_progress
+from rulec.batch.recording_judge import JudgedRecording, JudgeSettings, judged_file
 from rulec.diagnostics import RulecError
 from rulec.extraction import recording_parts
 from rulec.extraction.recording_parts import egos_of
@@ -58,7 +58,7 @@ def pieces(rules, jobs, to_explain, **more):
     def tell(*numbers):
         counted.append(numbers)
 
-    found = list(judge_with_progress(settings, str(world.data), tell, jobs, **more))
+    found = list(judged_file(settings, str(world.data), tell, jobs, **more))
     return found, counted
 
 

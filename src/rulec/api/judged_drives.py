@@ -12,9 +12,10 @@ from rulec.api.pictures import drive_drawing, trace_drawing
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_kinds import expected
-from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, explain_drive
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
+from rulec.extraction.violation_evidence import explain_drive
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.moments.drive_facts import idle_rules
@@ -120,17 +121,19 @@ class Judged(Rows, Mapping[str, Answer]):
     def summary(self, width: int = 80) -> str:
         """What was found, as ``rulec verify`` prints it in a terminal of this width."""
 
-    @abstractmethod
     def explain(self, violation: VerdictFinding) -> Explanation:
         """Explain a violation state by state. Raises ValueError for a finding from elsewhere."""
-
-    def _violation(self, finding: VerdictFinding, answer: object) -> Violation:
-        """The violation that a finding is about."""
-        for violation in answer.violations if isinstance(answer, Verdict) else ():
-            about = (*violation.binding.values(),)
-            if violation.rule == finding.rule and finding.other[: len(about)] == about:
-                return violation
+        finding = expected("violation", "VerdictFinding", violation)
+        answer = self._answers.get(finding.vehicle)
+        for found in answer.violations if isinstance(answer, Verdict) else ():
+            about = (*found.binding.values(),)
+            if found.rule == finding.rule and finding.other[: len(about)] == about:
+                return self._explained(found, finding.vehicle)
         raise ValueError(f"{finding!r} is no violation of these verdicts")
+
+    @abstractmethod
+    def _explained(self, violation: Violation, name: str) -> Explanation:
+        """The explanation of a violation by the drive or trace of this name."""
 
     def __repr__(self) -> str:
         said = f"{len(self.violated):,} of {counted(len(self), self.noun)} broke a hard rule"
@@ -204,11 +207,8 @@ class JudgedDrives(Judged):
                 return found.drive
         raise KeyError(name)
 
-    def explain(self, violation: VerdictFinding) -> Explanation:
-        """Explain a violation state by state. Raises ValueError for a finding from elsewhere."""
-        expected("violation", "VerdictFinding", violation)
-        found = self._violation(violation, self._answers.get(violation.vehicle))
-        return explain_drive(found, self.drive(violation.vehicle), self._rulebook)
+    def _explained(self, violation: Violation, name: str) -> Explanation:
+        return explain_drive(violation, self.drive(name), self._rulebook)
 
     def draw(
         self,
@@ -281,12 +281,8 @@ class JudgedTraces(Judged):
             free = f"{name} ({number})"
         return free
 
-    def explain(self, violation: VerdictFinding) -> Explanation:
-        """Explain a violation state by state. Raises ValueError for a finding from elsewhere."""
-        expected("violation", "VerdictFinding", violation)
-        found = self._violation(violation, self._answers.get(violation.vehicle))
-        name = violation.vehicle
-        return explain(found, self._traces[name], self._rules_of(name))
+    def _explained(self, violation: Violation, name: str) -> Explanation:
+        return explain(violation, self._traces[name], self._rules_of(name))
 
     def draw(self, subject: str | VerdictFinding, form: Format = "svg") -> bytes:
         """Draw a trace's values over time: the content of a file. Raises KeyError."""

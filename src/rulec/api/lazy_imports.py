@@ -34,10 +34,11 @@ if TYPE_CHECKING:
     from rulec.cell_words import cell_words, on_side_of
     from rulec.code_generation.monitor_files import write_monitor
     from rulec.extraction.moment_search import in_recordings, in_traces
-    from rulec.extraction.recording_verdicts import RecordingVerdicts, explain_drive
+    from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection import RequestedDrives, selected_drives
-    from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
+    from rulec.extraction.tellable_words import TELLABLE_WORDS
     from rulec.extraction.traces.tellable_types import told_types
+    from rulec.extraction.violation_evidence import explain_drive
     from rulec.logic.bounds import has_seconds, longest_divisor
     from rulec.logic.sentences.language import LANGUAGES
     from rulec.ltl_export.ltl_files import write_ltl

@@ -179,7 +179,7 @@ class RulebookQuestions(RulebookVerbs):
             drives = lazy.selected_drives(
                 recording, lazy.RequestedDrives(), str(source), rulebook.traffic
             )
-            told, form = lazy.told_words(drives), recording.form
+            told, form = drives.told_words(), recording.form
             types = (lanelet.types for lanelet in recording.lanelets.values())
             lacking = values_lacking(frozenset().union(*types))
         words = with_told_values(told, rulebook.vocabulary, lacking)

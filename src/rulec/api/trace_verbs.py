@@ -130,13 +130,8 @@ class TraceVerbs(SessionSettings):
         if isinstance(drives, lazy.Recording) or lazy.is_recording(str(drives)):
             if assumptions is not None:
                 raise ValueError("`assumptions` are for traces; a recording takes `wanted`")
-            read = (
-                drives
-                if isinstance(drives, lazy.Recording)
-                else self.read_recording(drives, map_path)
-            )
-            file = drives.name if isinstance(drives, lazy.Recording) else str(drives)
-            return lazy.JudgedDrives(read, compiled, wanted or lazy.RequestedDrives(), file)
+            recording, file = self._recording(drives, map_path)
+            return lazy.JudgedDrives(recording, compiled, wanted or lazy.RequestedDrives(), file)
         if wanted is not None or map_path is not None:
             raise ValueError("`wanted` and `map_path` are for recordings; this is a file of traces")
         traces = list(self.read_traces(drives))
@@ -216,14 +211,20 @@ class TraceVerbs(SessionSettings):
                 for a file that is not a recording.
             TypeError: for anything other than a file or a recording, such as a data frame.
         """
-        file = recording if isinstance(recording, str | Path) else recording.name
-        if isinstance(recording, str | Path):
-            recording = self.read_recording(recording, map_path)
+        read, file = self._recording(recording, map_path)
         compiled = self._compiled(rules)
         request = wanted or lazy.RequestedDrives()
-        return lazy.RecordingVerdicts(recording, compiled, request, str(file), says_law=True)
+        return lazy.RecordingVerdicts(read, compiled, request, file, says_law=True)
 
     judge_recording = verify_recording
+
+    def _recording(
+        self, given: str | Path | Recording, map_path: str | Path | None
+    ) -> tuple[Recording, str]:
+        """A recording, read if need be, and what messages call it."""
+        if isinstance(given, str | Path):
+            return self.read_recording(given, map_path), str(given)
+        return given, given.name
 
     def score(
         self,

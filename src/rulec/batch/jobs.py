@@ -28,6 +28,10 @@ class LostTask:
     signal_number: int | None
 
 
+ALONE = Jobs(1)
+"""This process does all of the work."""
+
+
 def chosen_jobs(number: int | None) -> Jobs:
     """``number`` processes; 0 is one per processor, None the same if the work takes long enough."""
     if number is None:

@@ -1,4 +1,4 @@
-"""Judge a file of recorded traffic and give the results piece by piece."""
+"""Judge files of recorded traffic, in one process or several, and give results piece by piece."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.batch.batch_messages import process_lost
-from rulec.batch.jobs import Jobs, LostTask
-from rulec.batch.worker_pool import in_order
+from rulec.batch.jobs import ALONE, Jobs, LostTask
+from rulec.batch.worker_pool import in_order, nobody
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import with_place
 from rulec.diagnostics.fault_messages import contained
@@ -97,30 +97,55 @@ class DriveProblem:
 Piece = str | RulecError | DriveProblem | JudgedRecording
 """A line of JSON, the error of a file or of a drive, or the result of a whole recording."""
 
-
-_ALONE = Jobs(1)
-
-
-def _nobody(*_: object) -> None:
-    """Do nothing."""
+LARGE_BYTES = 1_000_000
+"""Judging files of this total size (bytes) takes long enough to start processes at once."""
 
 
-def judge(settings: JudgeSettings, path: str) -> Iterator[Piece]:
-    """The results of a file in order; if the file cannot be read, the error."""
-    return judge_with_progress(settings, path, _nobody)
+def judged_files(
+    settings: JudgeSettings,
+    files: Sequence[str],
+    jobs: Jobs,
+    tell: Callable[[float], object],
+    lost: Callable[[str, int | None], object],
+) -> Iterator[tuple[str, Piece]]:
+    """Each file with each piece of its result, in the files' order.
+
+    ``tell`` is called with the number of finished files; ``lost`` with a file whose process was
+    killed, and the signal, before the file, or its part, is judged again.
+    """
+    if len(files) == 1:
+        (file,) = files
+        for piece in judged_file(
+            settings, file, lambda done, every: tell(done / every), jobs, partial(lost, file)
+        ):
+            yield file, piece
+        return
+    if _size(files) >= LARGE_BYTES:
+        jobs = replace(jobs, alone_s=0.0)
+    for file, result in in_order(partial(judged_file, settings), files, jobs, tell, lost):
+        if isinstance(result, LostTask):
+            yield file, process_lost(settings.labels.get(file, file), result.signal_number)
+        else:
+            yield file, result
 
 
-def judge_with_progress(
+def _size(files: Sequence[str]) -> int:
+    """The total size of the first thousand files in bytes, which is enough for an estimate."""
+    return sum(path.stat().st_size for path in map(Path, files[:1000]) if path.is_file())
+
+
+def judged_file(
     settings: JudgeSettings,
     path: str,
-    tell: Callable[[int, int], object],
-    jobs: Jobs = _ALONE,
-    lost: Callable[[int | None], object] = _nobody,
+    tell: Callable[[int, int], object] = nobody,
+    jobs: Jobs = ALONE,
+    lost: Callable[[int | None], object] = nobody,
 ) -> Iterator[Piece]:
-    """Like ``judge``; ``tell`` gets the numbers of finished and of all vehicles (or parts).
+    """The results of a file in order; if the file cannot be read, the error.
 
-    The parts of a long recording are judged in several processes; ``lost`` is called with the
-    signal that killed one of them, before its part is judged again.
+    ``tell`` gets the numbers of finished and of all vehicles (or parts). The parts of a long
+    recording are judged in several processes; ``lost`` is called with the signal that killed one
+    of them, before its part is judged again.
     """
     left = settings.to_explain
     label = settings.labels.get(path, path)
@@ -193,7 +218,7 @@ class _RecordingJudge:
         """A piece for each drive that has something to report, then the recording."""
         # No name for a verdict here: it would keep the arrays of its drive alive until the next
         # one.
-        for number, pieces in enumerate(map(self._of_drive, self._verdicts.answers()), 1):
+        for number, pieces in enumerate(map(self._reported, self._verdicts.answers()), 1):
             tell(number, len(self._verdicts.egos))
             yield from pieces
         yield self._whole()
@@ -234,7 +259,7 @@ class _RecordingJudge:
         """The results of all drives."""
         judged = self._judged
         for answer in self._verdicts.answers():
-            judged.pieces += self._of_drive(answer)
+            judged.pieces += self._reported(answer)
         judged.findings = self._accounts.findings.gathered if self._settings.findings else None
         return judged
 
@@ -248,43 +273,38 @@ class _RecordingJudge:
         if later.findings is not None:
             self._accounts.findings.gathered.include(later.findings)
 
-    def _of_drive(self, answer: DriveVerdict | NoDrive) -> list[Piece]:
+    def _reported(self, answer: DriveVerdict | NoDrive) -> list[Piece]:
+        """What is to be said of a drive; the rest is kept for the whole recording."""
+        settings, verdicts, judged = self._settings, self._verdicts, self._judged
         try:
-            return list(self._reported(answer))
+            pieces: list[Piece] = []
+            explained: list[Explanation] = []
+            faults: Sequence[RulecError] = ()
+            if isinstance(answer, NoDrive):
+                faults = [] if answer.fault is None else [answer.fault]
+            elif isinstance(answer.answer, NotJudged):
+                pieces.append(DriveProblem(answer.answer.error))
+            else:
+                faults, explained = answer.answer.faults, self._explained(answer)
+            place = SourceLocation(self._file)
+            pieces += [DriveProblem(with_place(fault, place)) for fault in faults]
+            own = self._accounts.findings.add(answer, explained) if settings.findings else None
+            idle = None
+            if settings.idle_rules is not None and not isinstance(answer, NoDrive):
+                idle = settings.idle_rules(answer.drive.arrays, verdicts.rules, answer.answer)
+            if settings.layout is not None:
+                self._show(answer, explained, own)
+            if settings.to_rows is not None:
+                judged.rows += settings.to_rows(answer, verdicts, self._file, own)
+            if settings.to_line is not None:
+                pieces.append(settings.to_line(answer, verdicts, explained, idle))
+            names = [rule.name for rule in verdicts.rules.rules]
+            judged.tally.add(answer, names, idle or frozenset())
+            return pieces
         except Exception as problem:
             if isinstance(answer, NoDrive):
                 raise
-            return list(self._reported(lost_drive(answer.drive.arrays.id, problem)))
-
-    def _reported(self, answer: DriveVerdict | NoDrive) -> Iterator[Piece]:
-        verdicts, judged = self._verdicts, self._judged
-        explained: list[Explanation] = []
-        if isinstance(answer, NoDrive):
-            if answer.fault is not None:
-                yield DriveProblem(with_place(answer.fault, SourceLocation(self._file)))
-        elif isinstance(answer.answer, NotJudged):
-            yield DriveProblem(answer.answer.error)
-        else:
-            for fault in answer.answer.faults:
-                yield DriveProblem(with_place(fault, SourceLocation(self._file)))
-            explained = self._explained(answer)
-        wanted = self._settings.findings
-        own = self._accounts.findings.add(answer, explained) if wanted else None
-        idle = self._idle(answer)
-        if self._settings.layout is not None:
-            self._show(answer, explained, own)
-        if self._settings.to_rows is not None:
-            judged.rows += self._settings.to_rows(answer, verdicts, self._file, own)
-        if self._settings.to_line is not None:
-            yield self._settings.to_line(answer, verdicts, explained, idle)
-        judged.tally.add(answer, [rule.name for rule in verdicts.rules.rules], idle or frozenset())
-
-    def _idle(self, found: DriveVerdict | NoDrive) -> frozenset[str] | None:
-        """The rules that a drive gave no opportunity to violate, if that is asked."""
-        idle_rules = self._settings.idle_rules
-        if idle_rules is None or isinstance(found, NoDrive):
-            return None
-        return idle_rules(found.drive.arrays, self._verdicts.rules, found.answer)
+            return self._reported(lost_drive(answer.drive.arrays.id, problem))
 
     def _show(
         self,

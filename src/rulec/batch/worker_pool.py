@@ -8,7 +8,7 @@ from time import monotonic
 from rulec.batch.jobs import Jobs, LostTask, Result, Task
 
 
-def _nobody(*_: object) -> None:
+def nobody(*_: object) -> None:
     """Do nothing."""
 
 
@@ -16,8 +16,8 @@ def in_order(
     work: Callable[[Task], Iterator[Result]],
     tasks: Sequence[Task],
     jobs: Jobs,
-    tell: Callable[[int], object] = _nobody,
-    lost: Callable[[Task, int | None], object] = _nobody,
+    tell: Callable[[int], object] = nobody,
+    lost: Callable[[Task, int | None], object] = nobody,
 ) -> Iterator[tuple[Task, Result | LostTask]]:
     """Each task with each of its results, in the order of the tasks.
 

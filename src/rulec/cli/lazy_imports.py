@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from rulec.batch import spreading
     from rulec.batch.drive_batch import WrittenDrives, in_vehicle_order
     from rulec.batch.example_batch import ExampleRequest, measured_runs
-    from rulec.batch.recording_batch import judged_files
     from rulec.batch.recording_judge import JudgeSettings
     from rulec.book_tests import example_runs
     from rulec.book_tests.example_coverage import RuleCoverage, uncovered_verdicts
@@ -44,10 +43,12 @@ if TYPE_CHECKING:
     from rulec.cli.recording_run import RecordingRun
     from rulec.cli.trace_run import TraceRun
     from rulec.cli.usage_help import unknown_verb, ways_out
+    from rulec.cli.verdict_run import VerdictRun
     from rulec.enforced_limits import enforced, limit_error
     from rulec.extraction.moment_search import DriveMoments, Look, in_recordings, in_traces
-    from rulec.extraction.selection import RequestedDrives, assumption_options
-    from rulec.extraction.traffic_thresholds import threshold_options
+    from rulec.extraction.selection import RequestedDrives
+    from rulec.extraction.traces.assumed_values import assumption_options
+    from rulec.extraction.traffic_thresholds import Thresholds, threshold_options
     from rulec.files import file_messages
     from rulec.fleet.drive_rows import DriveRows, judged_by
     from rulec.fleet.finding_columns import COLUMNS

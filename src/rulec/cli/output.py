@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from functools import partial
 from glob import has_magic
 from pathlib import Path
-from typing import IO, cast
+from typing import IO, TYPE_CHECKING, cast
 
 import click
 
@@ -17,7 +17,6 @@ import rulec
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output
-from rulec.cli.options.shared_options import only_sources
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.fault_messages import fault_of
 from rulec.files.left_alone import LeftAlone, in_words
@@ -39,6 +38,9 @@ from rulec.report.text.outgoing import OutgoingLines, outgoing
 from rulec.report.text.terminal_text import wants_color
 from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import exclusion, search_path
+
+if TYPE_CHECKING:
+    from rulec.report.pictures.drawing.styles import Theme
 
 _REPORTS = ("html", "junit", "sarif", "svg")
 """Formats for people and for display in other programs."""
@@ -103,6 +105,14 @@ def print_written(content: str, to: Output) -> None:
         print_line(f"wrote {content}")
 
 
+def put_picture(drawing: lazy.Drawing, to: Output, theme: Theme = "auto") -> None:
+    """Write a picture in the format of the output. Raises RulecError R0702, R0707."""
+    data = lazy.picture_formats.as_bytes(drawing, to.form, to.path, theme)
+    with output_stream(to) as (stream, _):
+        stream.write(data)
+    print_written(to.path, to)
+
+
 def put_answer(text: str, to: Output) -> None:
     """Write the answer to standard output, or to a file. Raises RulecError R0702."""
     with answer_lines(to) as write:
@@ -159,9 +169,11 @@ def print_left_alone(left_alone: Sequence[LeftAlone], *, verbose: bool) -> None:
 def sources_of_rulebooks(references: Sequence[str], lack: str) -> tuple[str, ...]:
     """Rulebooks as from ``rulebooks_named``, refusing compiled ones.
 
-    ``lack`` is the reason, such as ``"cannot be audited"``.
+    ``lack`` is the reason, such as ``"cannot be audited"``. Raises click.UsageError.
     """
-    only_sources(references, lack)
+    for reference in references:
+        if reference.endswith(".json"):
+            raise click.UsageError(f"`{reference}` is compiled and {lack}; give its source")
     return rulebooks_named(references)
 
 

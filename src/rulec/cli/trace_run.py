@@ -5,28 +5,23 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from io import UnsupportedOperation
-from pathlib import Path
 from typing import IO, Any, cast
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cli import lazy_imports as lazy
-from rulec.cli.options.standard_input import standard_input
-from rulec.cli.verdict_outputs import VerdictOutputs
+from rulec.cli.options.standard_input import input_stream
+from rulec.cli.verdict_run import VerdictRun
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import with_place
 from rulec.diagnostics.fault_messages import contained, fault_of
-from rulec.files.read_files import opened
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import Items, rulebook_for, step_of, verify_items
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.findings.verdict_finding import RecordingFindings, VerdictFinding
 from rulec.report.text.console import page_width, print_remark, progress
 from rulec.report.verdicts import verdict_report
-from rulec.report.verdicts.batch_table import BatchTally
 from rulec.report.verdicts.state_times import StateTimes
 from rulec.resource_limits import REFUSED, BudgetSpentError
 from rulec.trace import Trace
@@ -45,23 +40,13 @@ _GOES_ON = (
 )
 
 
-@dataclass
-class TraceRun:
-    """Judges the traces of files, and sums up the results.
+@dataclass(kw_only=True)
+class TraceRun(VerdictRun):
+    """Judges the traces of files; the first ``to_explain`` violations of each are explained."""
 
-    The first ``to_explain`` violations of each file are explained.
-    """
-
-    rules: CompiledRulebook
-    to: VerdictOutputs
-    complaints: Complaints
     to_explain: int
     every_part: bool
-    total: BatchTally = field(default_factory=BatchTally)
-    judged: bool = False
-    complete: bool = True
     opened: bool = False
-    open_hard: bool = False
     pending: bool = False
 
     def __post_init__(self) -> None:
@@ -89,7 +74,7 @@ class TraceRun:
                     answer = NotJudged(answer.trace, fault)
                     self._not_judged(file, answer, findings)
                 rows += self._rows(file, answer, facts, findings[before:])
-            if self.to.wants_findings:
+            if self.to.writers:
                 found = (tuple(judged_traces), tuple(findings), tuple(rows))
                 self.to.add(RecordingFindings(file, "", *found))
         if self.total.judged or self.opened:
@@ -133,10 +118,11 @@ class TraceRun:
 
     def _not_judged(self, file: str, answer: NotJudged, findings: list[VerdictFinding]) -> None:
         self.total.not_judged += 1
+        self.complete = False
         self.complaints.add(answer.error)
-        if self.to.wants_lines:
+        if self.to.lines:
             self.to.line(lazy.verdict_json.not_judged_as_json(answer, self.rules.name))
-        if self.to.wants_findings:
+        if self.to.writers:
             findings.append(lazy.not_judged_trace(file, answer, self.rules.name))
 
     def _judged(self, file: str, answer: Any, left: int, findings: list[VerdictFinding]) -> int:
@@ -149,7 +135,7 @@ class TraceRun:
         self.open_hard |= any(result.strength == "hard" for result in verdict.open)
         self.judged |= len(verdict.not_judged) < max(len(self._names), 1)
         says = bool(verdict.violations or verdict.open or verdict.not_judged)
-        if not says and not self.to.wants_lines:
+        if not says and not self.to.lines:
             return 0
         used = rulebook_for(traces, place, self.rules)
         explained: list[lazy.Explanation] = []
@@ -159,9 +145,9 @@ class TraceRun:
             explained = [
                 lazy.explain(violation, trace, used) for violation in verdict.violations[:left]
             ]
-        if self.to.wants_lines:
+        if self.to.lines:
             self.to.line(lazy.verdict_json.as_json(verdict, used, explained))
-        if says and self.to.wants_text:
+        if says and self.to.texts:
             most, width = verdict_report.MOST_VIOLATIONS, page_width()
             times = StateTimes(step_s=step_of(traces, place))
             tables: list[str] = []
@@ -173,7 +159,7 @@ class TraceRun:
             self.to.text(text)
             shown = verdict.open[:most]
             self.pending |= any("not over" in result.because for result in shown)
-        if self.to.wants_findings:
+        if self.to.writers:
             findings += lazy.trace_findings(file, traces[place], verdict, used, explained)
         return len(explained)
 
@@ -181,14 +167,11 @@ class TraceRun:
         self, file: str, form: Format | None, assumed: Assumptions
     ) -> Iterator[AnswerWithFacts]:
         try:
-            if file == "-":
-                stream = standard_input()
+            place = SourceLocation(file)
+            with input_stream(file) as (stream, name), contained("not judged", place):
                 self.opened = True
-                yield from self._in_stream(stream, "standard input", form or "jsonl", assumed)
-                return
-            with opened(Path(file)) as stream, contained("not judged", SourceLocation(file)):
-                self.opened = True
-                yield from self._in_stream(stream, file, form or format_of(file), assumed)
+                form = form or (format_of(file) if name == file else "jsonl")
+                yield from self._in_stream(stream, name, form, assumed)
         except BudgetSpentError:
             raise
         except RulecError as error:

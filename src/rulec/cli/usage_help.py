@@ -80,74 +80,18 @@ def reworded(problem: click.ClickException) -> str:
     """The message, in the words used for sources, with a suggestion."""
     message = problem.format_message()
     if isinstance(problem, click.NoSuchOption) and problem.ctx is not None:
-        known = [
-            option
-            for parameter in problem.ctx.command.params
-            if isinstance(parameter, click.Option)  # an argument's name is nothing to type
-            for option in parameter.opts
-        ]
-        if others := _OF_OTHER_VERBS.get(problem.option_name):
-            return f"there is no option `{problem.option_name}` here; {others}"
-        general = [option for own in problem.ctx.find_root().command.params for option in own.opts]
-        if problem.option_name in general and problem.ctx.parent is not None:
-            path = problem.ctx.command_path.removeprefix("rulec ")
-            return (
-                f"`{problem.option_name}` stands before the verb: "
-                f"`rulec {problem.option_name} … {path} …`"
-            )
-        if problem.option_name in ("-r", "--rulebook") and "-r" not in known:
-            names = {
-                own.name for own in problem.ctx.command.params if isinstance(own, click.Argument)
-            }
-            if names & {"rulebook", "rulebooks", "sources"}:
-                path = problem.ctx.command_path
-                return f"the rulebook is given without `{problem.option_name}`, as in `{path} de`"
-            return (
-                f"there is no option `{problem.option_name}` here; the verbs that judge have it, "
-                "such as `rulec verify`"
-            )
-        fitting = [option for option in known if option.startswith(problem.option_name)]
-        # Compared without dashes, which all options have.
-        by_name = {option.lstrip("-"): option for option in known}
-        near = nearest_name(problem.option_name.lstrip("-"), by_name)
-        likely = fitting[0] if fitting else by_name.get(near or "")
-        way_out = f"; did you mean `{likely}`?" if likely else ""
-        return f"there is no option `{problem.option_name}`{way_out}"
+        return _no_option(problem.option_name, problem.ctx)
     param = problem.param if isinstance(problem, click.BadParameter) else None
-    kind = None if param is None else param.type
-    if (
-        param is not None
-        and isinstance(kind, click.types.IntParamType)
-        and (match := _NO_NUMBER.match(problem.message))
-    ):
-        return f"{_as_typed(param, problem)}: `{match['given']}` is no whole number"
-    if (
-        param is not None
-        and isinstance(kind, click.IntRange | click.FloatRange)
-        and (match := _OUT_OF_RANGE.match(problem.message))
-    ):
-        limits = f"from {kind.min} to {kind.max}" if kind.max is not None else f"{kind.min} or more"
-        return f"{_as_typed(param, problem)}: `{match['given']}` is out of range: it is {limits}"
-    if (
-        param is not None
-        and isinstance(kind, click.Choice)
-        and (match := _NO_CHOICE.search(problem.message))
-    ):
-        given, choices = match["given"], [str(choice) for choice in kind.choices]
-        subject = "" if param.param_type_name == "argument" else f"{_as_typed(param, problem)}: "
-        likely = _OTHER_VALUES.get(given.casefold())
-        near = likely if likely in choices else nearest_name(given, choices)
-        every = f"it is one of {', '.join(choices)}"
-        way_out = f"did you mean `{near}`? ({every})" if near else every
-        return f"{subject}there is no `{given}`; {way_out}"
+    if isinstance(problem, click.BadParameter) and (wrong := _wrong_value(problem)):
+        return wrong
     if isinstance(problem, click.BadOptionUsage) and message.endswith("requires an argument."):
         return f"{problem.option_name} is given without a value"
     if isinstance(problem, click.MissingParameter):
         if isinstance(param, click.Option):
             return f"{' or '.join(f'`{name}`' for name in param.opts)} is missing"
-        return (
-            f"`{param.make_metavar(problem.ctx)}` is missing" if param and problem.ctx else message
-        )
+        if param is not None and problem.ctx is not None:
+            return f"`{param.make_metavar(problem.ctx)}` is missing"
+        return message
     if isinstance(param, click.Option):
         return f"{_as_typed(param, problem)}: {problem.message}"
     if match := _TOO_MUCH.match(message):
@@ -161,6 +105,56 @@ def reworded(problem: click.ClickException) -> str:
         way_out = f"did you mean `{near}`?" if near else f"it has {', '.join(names)}"
         return f"`{context.command_path}` has no command `{match['given']}`; {way_out}"
     return message
+
+
+def _no_option(name: str, context: click.Context) -> str:
+    """That a command has no such option, and where there is one."""
+    params = context.command.params
+    # An argument's name is nothing to type
+    known = [text for own in params if isinstance(own, click.Option) for text in own.opts]
+    if others := _OF_OTHER_VERBS.get(name):
+        return f"there is no option `{name}` here; {others}"
+    path = context.command_path
+    general = [text for own in context.find_root().command.params for text in own.opts]
+    if name in general and context.parent is not None:
+        return f"`{name}` stands before the verb: `rulec {name} … {path.removeprefix('rulec ')} …`"
+    if name in ("-r", "--rulebook") and "-r" not in known:
+        names = {own.name for own in params if isinstance(own, click.Argument)}
+        if names & {"rulebook", "rulebooks", "sources"}:
+            return f"the rulebook is given without `{name}`, as in `{path} de`"
+        others = "the verbs that judge have it, such as `rulec verify`"
+        return f"there is no option `{name}` here; {others}"
+    fitting = [text for text in known if text.startswith(name)]
+    # Compared without dashes, which all options have.
+    by_name = {text.lstrip("-"): text for text in known}
+    near = nearest_name(name.lstrip("-"), by_name)
+    likely = fitting[0] if fitting else by_name.get(near or "")
+    return f"there is no option `{name}`{f'; did you mean `{likely}`?' if likely else ''}"
+
+
+def _wrong_value(problem: click.BadParameter) -> str:
+    """That a number or a choice is wrong, and what is right; empty for other problems."""
+    param = problem.param
+    if param is None:
+        return ""
+    typed = _as_typed(param, problem)
+    match param.type:
+        case click.types.IntParamType() if match := _NO_NUMBER.match(problem.message):
+            return f"{typed}: `{match['given']}` is no whole number"
+        case click.IntRange(min=low, max=high) | click.FloatRange(min=low, max=high) if (
+            match := _OUT_OF_RANGE.match(problem.message)
+        ):
+            limits = f"from {low} to {high}" if high is not None else f"{low} or more"
+            return f"{typed}: `{match['given']}` is out of range: it is {limits}"
+        case click.Choice() as kind if match := _NO_CHOICE.search(problem.message):
+            given, choices = match["given"], [str(choice) for choice in kind.choices]
+            subject = "" if param.param_type_name == "argument" else f"{typed}: "
+            likely = _OTHER_VALUES.get(given.casefold())
+            near = likely if likely in choices else nearest_name(given, choices)
+            every = f"it is one of {', '.join(choices)}"
+            way_out = f"did you mean `{near}`? ({every})" if near else every
+            return f"{subject}there is no `{given}`; {way_out}"
+    return ""
 
 
 def _as_typed(param: click.Parameter, problem: click.ClickException) -> str:

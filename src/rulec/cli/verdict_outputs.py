@@ -26,30 +26,16 @@ class VerdictOutputs:
     def __init__(self) -> None:
         self.to_rows: lazy.DriveRows | None = None
         """The builder of rows of drives and rules, if tables of findings include them."""
-        self._text: list[Callable[[str], None]] = []
-        self._lines: list[Callable[[str], None]] = []
-        self._writers: list[tuple[FindingWriter, str]] = []
-        self._findings = 0
+        self.texts: list[Callable[[str], None]] = []
+        self.lines: list[Callable[[str], None]] = []
+        self.writers: list[FindingWriter] = []
+        """What takes the text, JSON lines and findings; none of them where they are not wanted."""
+        self.n_findings = 0
         self._heading = ""
-
-    @property
-    def wants_text(self) -> bool:
-        """Whether an output needs the text."""
-        return bool(self._text)
-
-    @property
-    def wants_lines(self) -> bool:
-        """Whether an output needs JSON lines."""
-        return bool(self._lines)
-
-    @property
-    def wants_findings(self) -> bool:
-        """Whether an output needs findings."""
-        return bool(self._writers)
 
     def text(self, text: str) -> None:
         """Take a part of the text."""
-        for write in self._text:
+        for write in self.texts:
             if self._heading:
                 write(self._heading)
             write(text)
@@ -61,13 +47,13 @@ class VerdictOutputs:
 
     def line(self, line: str) -> None:
         """Take a line of JSON."""
-        for write in self._lines:
+        for write in self.lines:
             write(line)
 
     def add(self, findings: lazy.RecordingFindings) -> None:
         """Take the findings of a recording, or of a file of traces. Raises RulecError."""
-        self._findings += len(findings.findings)
-        for writer, _ in self._writers:
+        self.n_findings += len(findings.findings)
+        for writer in self.writers:
             writer.add(findings)
 
 
@@ -114,20 +100,19 @@ def verdict_outputs(
             if output.is_file:
                 written.append(output)
             if output.form in ("text", "json"):
-                lines = outputs._text if output.form == "text" else outputs._lines
+                lines = outputs.texts if output.form == "text" else outputs.lines
                 lines.append(files.enter_context(answer_lines(output)))
             else:
                 stream, name = files.enter_context(output_stream(output))
                 about = lazy.FindingContext(rules, columns=columns, strict=strict)
-                writer = finding_writer(output.form, stream, about, name)
-                outputs._writers.append((writer, name))
-        if len(written) == len(to) and not outputs._text:
-            outputs._text.append(print_result)
+                outputs.writers.append(finding_writer(output.form, stream, about, name))
+        if len(written) == len(to) and not outputs.texts:
+            outputs.texts.append(print_result)
         yield outputs
-        for writer, _ in outputs._writers:
+        for writer in outputs.writers:
             writer.close()
     if len(written) == len(to):
         for output in written:
             is_whole = output.form in ("text", "json")
-            content = "the answer" if is_whole else counted(outputs._findings, "finding")
+            content = "the answer" if is_whole else counted(outputs.n_findings, "finding")
             print_line(f"wrote {content} to {output.path}")

@@ -12,6 +12,7 @@ from typing import NoReturn
 import click
 
 from rulec.cli import lazy_imports as lazy
+from rulec.cli.options.verb_class import option
 from rulec.cli.output import errors_told
 from rulec.diagnostics import RulecError
 from rulec.report.text.console import print_remark
@@ -24,7 +25,7 @@ _LOOK_EVERY_S = 0.5
 _CLEAR = "\x1b[2J\x1b[3J\x1b[H"
 """Clears a terminal and its scrollback, and moves the cursor to the top."""
 
-watch_option = click.option(
+watch_option = option(
     "--watch",
     is_flag=True,
     help="Keep running, and repeat whenever a source changes; Ctrl-C stops.",

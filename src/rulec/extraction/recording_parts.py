@@ -218,10 +218,7 @@ def _first_poses(body: Participant) -> tuple[NDArray[intp], NDArray[np.float64]]
 
 
 def _in_the_middle(stated: Iterable[StatedError]) -> StatedError:
-    # 4 ms: only where a source states errors.
-    from statistics import median
-
-    return StatedError(*map(median, zip(*stated, strict=True)))
+    return StatedError(*np.median(list(stated), axis=0).tolist())
 
 
 def _first_and_last(recording: Recording) -> tuple[int, int]:

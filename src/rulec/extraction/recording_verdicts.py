@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import partial
+from itertools import chain
+from typing import Any, NamedTuple
 
 from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -22,16 +24,12 @@ from rulec.monitoring.uncertainty.state_letters.related_facts import related_fac
 from rulec.monitoring.verdict import (
     NotJudged,
     Verdict,
-    Violation,
     agreed_by_type,
     with_law,
 )
 from rulec.recordings.recording import Recording
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import Rows, short_repr
-
-if TYPE_CHECKING:
-    from rulec.monitoring.explain.explanation import Explanation
 
 _MOST_KEPT = 1 << 6
 """Most selections of rules that are kept; beyond this all are dropped."""
@@ -53,18 +51,6 @@ def rulebook_at(rulebook: CompiledRulebook, step_s: float) -> CompiledRulebook:
             raise
         # Each drive will report that it cannot be judged.
         return rulebook
-
-
-def explain_drive(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Explanation:
-    """Explain a violation in a drive, with the numbers that decided its words.
-
-    ``rules`` may have any step that the recording's verdicts may have.
-    """
-    # Explanations, 20 ms: only where something is violated.
-    from rulec.monitoring.explain.explanation import explain
-
-    at_step = rulebook_at(rules, drive.arrays.step_s)
-    return explain(violation, drive.trace, at_step, drive.decided_by)
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +119,21 @@ class RecordingVerdicts(Rows):
 
     def answers(self) -> Iterator[DriveVerdict | NoDrive]:
         """The verdict on each drive, in the order of the file."""
+        # No name for a drive here: it would keep the arrays of its part until the next one's are
+        # made.
+        judged = map(partial(judged_drives, rulebook=self.rules), self._together())
+        return map(self._answer, chain.from_iterable(judged))
+
+    def _answer(self, found: JudgedDrive | NoDrive) -> DriveVerdict | NoDrive:
+        if isinstance(found, NoDrive):
+            return found
+        drive = found.with_verdict()
+        if not self._says_law:
+            return drive
+        return replace(drive, answer=with_law(drive.answer, edition_of(self.rules)))
+
+    def _together(self) -> Iterator[list[Drive | NoDrive]]:
+        """The drives, as many at a time as are verified together."""
         waiting: list[Drive | NoDrive] = []
         states = cells = 0
         for drive in self.drives:
@@ -141,15 +142,9 @@ class RecordingVerdicts(Rows):
                 states += drive.arrays.n_states
                 cells += int(drive.arrays.starts[-1])
             if states >= MOST_STATES or cells >= MOST_CELLS_TOGETHER:
-                yield from self._verified(waiting)
+                yield waiting
                 waiting, states, cells = [], 0, 0
-        yield from self._verified(waiting)
-
-    def _verified(self, drives: Sequence[Drive | NoDrive]) -> Iterator[DriveVerdict | NoDrive]:
-        for found in verified(drives, self.rules):
-            if self._says_law and isinstance(found, DriveVerdict):
-                found = replace(found, answer=with_law(found.answer, edition_of(self.rules)))
-            yield found
+        yield waiting
 
     def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
         """Rule -> names that it reads, that are not in ``words`` and take defaults in all states.
@@ -210,14 +205,6 @@ def some_rules(names: frozenset[str], rulebook: CompiledRulebook) -> SomeRules:
         facts = related_facts(read, some.axioms)
         known[names] = SomeRules(some, read.union(*[names_of(fact.formula) for fact in facts]))
     return known[names]
-
-
-def verified(
-    drives: Sequence[Drive | NoDrive], rulebook: CompiledRulebook
-) -> Iterator[DriveVerdict | NoDrive]:
-    """The verdicts of a rulebook for the drives' step, on drives verified together."""
-    for drive in judged_drives(drives, rulebook):
-        yield drive.with_verdict() if isinstance(drive, JudgedDrive) else drive
 
 
 def judged_drives(

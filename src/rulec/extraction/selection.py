@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from functools import partial
 
-from rulec.diagnostics import SourceLocation, did_you_mean, first_of, named
+from rulec.diagnostics import SourceLocation, did_you_mean, first_of
 from rulec.diagnostics.argument_kinds import expected
 from rulec.extraction.drives import Drives
 from rulec.extraction.possible_types import PossibleTypes
@@ -16,7 +14,7 @@ from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_p
 from rulec.extraction.traces.recorded_drive import Drive, DrivePlaces, NoDrive
 from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.extraction.traffic_thresholds import USUAL, Thresholds, hinted, pair_of
+from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.recordings.doubts.crowds import refuse_crowd
 from rulec.recordings.mending.mended_recording import mended
 from rulec.recordings.recording import Recording, Side
@@ -25,11 +23,9 @@ from rulec.rulebook.rulebook_model import Traffic
 from rulec.trace import Value
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import short_repr
-from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.units import parse_unit
+from rulec.vocabulary import Vocabulary
 
 _MOST_NAMED = 12
-_NUMBER = re.compile(r"(-?[0-9]{1,15}(?:\.[0-9]{1,15})?)\s*(\S*)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +141,10 @@ class SelectedDrives:
         # Drives of vehicles that were not requested have the same types
         return self._drives_of(self.recording).kinds() if first is None else dict(first.kinds)
 
+    def told_words(self) -> frozenset[str]:
+        """The words that at least one of these drives supplies."""
+        return frozenset().union(*(drive.words for drive in self if isinstance(drive, Drive)))
+
 
 def _where_recorded(drive: Drive | NoDrive) -> Drive | NoDrive:
     """A drive of a mirrored recording, with its places as in the file: only words are mirrored."""
@@ -228,54 +228,3 @@ def _examples(known: tuple[str, ...]) -> str:
     if not known:
         return "nobody in this file does"
     return f"choose {first_of([f'`{name}`' for name in known], _MOST_NAMED, 'or one of')}"
-
-
-def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str, Value]:
-    """Name -> value, from texts such as ``built_up=true`` and ``limit=30 mph``.
-
-    Raises ValueError with a message for users.
-    """
-    values: dict[str, Value] = {}
-    for text in texts:
-        name, value = pair_of(text, "built_up=true")
-        declaration = vocabulary.declarations.get(name)
-        if declaration is None:
-            known = [x.name for x in vocabulary.declarations.values() if not x.parameters]
-            message = f"`{vocabulary.name}` does not know `{name}`"
-            # Phrases and synonyms are read from files: only for this message.
-            from rulec.rulebook.names.word_meanings import suggestion
-
-            hint = suggestion(name, known)
-            raise ValueError(f"{message}; {hint}" if hint else message)
-        if declaration.parameters:
-            raise ValueError(f"`{name}` is about objects; assume only words that are not")
-        values[name] = _value(value, declaration)
-    return values
-
-
-def _value(text: str, declaration: Declaration) -> Value:
-    match declaration:
-        case Signal(name):
-            if text not in ("true", "false"):
-                raise ValueError(f"`{name}` is `true` or `false`, not `{text}`")
-            return text == "true"
-        case Enumeration(name, _, values):
-            if text not in values:
-                message = f"`{name}` is one of {named(values)}, not `{text}`"
-                raise ValueError(hinted(message, text, values))
-            return text
-        case Quantity(name, _, unit):
-            return _measure(text, name, unit)
-
-
-def _measure(text: str, name: str, unit: str) -> float:
-    """A number in its own unit, converted from any unit of its dimension; 0 needs no unit."""
-    match = _NUMBER.fullmatch(text)
-    own = parse_unit(unit)
-    given = own if match is None or not match[2] else parse_unit(match[2])
-    if match is not None and not match[2] and unit and Fraction(match[1]):
-        raise ValueError(f"`{name}` is in {unit}: write the unit, such as `{name}={text} {unit}`")
-    if match is None or own is None or given is None or given.dimension != own.dimension:
-        example = f"50 {unit}" if unit else "50"
-        raise ValueError(f"`{name}` is a number such as `{example}`, not `{text}`")
-    return float(Fraction(match[1]) * given.factor / own.factor)

@@ -1,12 +1,8 @@
-"""The words that files of a format can supply, and those that a recording's drives do supply."""
+"""The words that files of a format can supply."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from rulec.extraction.selection import SelectedDrives
 
 _EITHER = frozenset(
     (
@@ -126,11 +122,3 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "argoverse-sensor": _ARGOVERSE,
 }
 """Format -> words that some file of it can supply; one may lack signs, lamps or weather."""
-
-
-def told_words(drives: SelectedDrives) -> frozenset[str]:
-    """The words that at least one of these drives supplies."""
-    # Extraction and its arrays take 250 ms to import: not needed for the tables above.
-    from rulec.extraction.traces.recorded_drive import Drive
-
-    return frozenset().union(*(drive.words for drive in drives if isinstance(drive, Drive)))

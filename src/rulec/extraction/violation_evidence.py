@@ -10,6 +10,7 @@ import numpy as np
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.extraction.recording_verdicts import rulebook_at
 from rulec.extraction.traces.recorded_drive import Drive, Place
 from rulec.logic.formula import Comparison, Count, atoms_of
 from rulec.logic.free_names import names_in
@@ -85,6 +86,15 @@ def evidence_of(
         place=drive.places[explained.decisive] if drive.places else None,
         whom=whom_of(explained, drive),
     )
+
+
+def explain_drive(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Explanation:
+    """Explain a violation in a drive, with the numbers that decided its words.
+
+    ``rules`` may have any step that the recording's verdicts may have.
+    """
+    at_step = rulebook_at(rules, drive.arrays.step_s)
+    return explain(violation, drive.trace, at_step, drive.decided_by)
 
 
 def whom_of(explained: Explanation, drive: Drive) -> tuple[str, ...]:

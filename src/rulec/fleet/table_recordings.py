@@ -19,7 +19,7 @@ from rulec.fleet.finding_columns import Row
 from rulec.fleet.fleet_messages import almost_named, cut_drive, no_drives, no_map, twice_named
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import Answer, Items, rulebook_for, verify_items
-from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of_many
+from rulec.monitoring.moments.drive_facts import facts_of_many
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.recordings.doubts.motion_doubts import with_doubts
 from rulec.recordings.doubts.road_doubts import check_near
@@ -166,45 +166,36 @@ class TraceTableJudge:
         yield from self._judged(rest.drop_columns(others), whole, own)
 
     def _judged(self, rows: Any, outlines: list[Any], own: Mapping[str, str]) -> Iterator[Row]:
-        to_rows, waiting = self.to_rows, iter(outlines)
+        waiting, file = iter(outlines), own.get(FILE, "") or "the table"
         try:
             with contained():
-                chunks = (
-                    arrow_tables.traces_of_table(rows, own.get(FILE, "") or "the table")
-                    if outlines
-                    else ()
-                )
-                for chunk in chunks:
-                    yield from self._of_chunk(chunk, waiting, own)
+                for chunk in arrow_tables.traces_of_table(rows, file) if outlines else ():
+                    for judged in verify_items(self.assumed.of(chunk), self.to_rows.rules):
+                        yield from self._of_traces(*judged, waiting, own)
         except RulecError as error:
             for outline in waiting:
-                yield to_rows.of_nothing({**own, "vehicle": outline.name}, _why(error))
+                yield self.to_rows.of_nothing({**own, "vehicle": outline.name}, _why(error))
 
-    def _of_chunk(
-        self, chunk: Items, waiting: Iterator[Any], own: Mapping[str, str]
+    def _of_traces(
+        self,
+        traces: Items,
+        answers: Iterable[Answer],
+        waiting: Iterator[Any],
+        own: Mapping[str, str],
     ) -> Iterator[Row]:
-        to_rows = self.to_rows
-        for traces, answers in verify_items(self.assumed.of(chunk), to_rows.rules):
-            for place, row in enumerate(self._with_facts(traces, answers)):
-                named = {**own, "vehicle": next(waiting).name}
-                if isinstance(row, str):
-                    yield to_rows.of_nothing(named, row)
-                    continue
-                verdict, facts = row
-                findings = self._findings(traces, place, verdict, own)
-                yield from to_rows.of_trace(facts, verdict, named, findings)
-
-    def _with_facts(
-        self, traces: Items, answers: Iterable[Answer]
-    ) -> list[tuple[Verdict, DriveFacts] | str]:
-        """For each trace its verdict and the facts needed for rates, or why it has none."""
         # Only the reason, not the whole message: a table may contain as many reasons as rows.
         short = [
             _why(answer.error) if isinstance(answer, NotJudged) else answer for answer in answers
         ]
         verdicts = [None if isinstance(answer, str) else answer for answer in short]
         facts = iter(facts_of_many(traces, verdicts, self.to_rows.rules))
-        return [answer if isinstance(answer, str) else (answer, next(facts)) for answer in short]
+        for place, answer in enumerate(short):
+            named = {**own, "vehicle": next(waiting).name}
+            if isinstance(answer, str):
+                yield self.to_rows.of_nothing(named, answer)
+                continue
+            findings = self._findings(traces, place, answer, own)
+            yield from self.to_rows.of_trace(next(facts), answer, named, findings)
 
     def _findings(
         self, traces: Items, place: int, verdict: Verdict, own: Mapping[str, str]

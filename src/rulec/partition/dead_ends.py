@@ -13,11 +13,11 @@ from rulec.scenario import Box, Scenario
 from rulec.scenario.motion import swept
 from rulec.scenario.time_grid import MAX_LAYERS
 
-MOST_TIMES_LONGER = 4
-"""The horizon is multiplied by this at most, by doubling, to find one that leads to the goal."""
+TIMES_LONGER = 2, 4
+"""The horizon is multiplied by these, in turn, to find one that leads to the goal."""
 
-MOST_TIMES_FINER = 4
-"""The step is divided by this at most, by halving, to find one that opens a way."""
+TIMES_FINER = 2, 4
+"""The step is divided by these, in turn, to find one that opens a way."""
 
 _MOST_TRIED = 12
 """With more obstacles in the way it is not tried which of them close it."""
@@ -108,20 +108,15 @@ def _openings(graph: NavigationGraph, *, short_of_goal: bool) -> Iterator[str]:
     ``short_of_goal``: there are ways, but none to the goal. Then bounds are not lifted: without
     them any cell that overlaps the goal is one.
     """
-    longer = 2
-    while short_of_goal and longer <= MOST_TIMES_LONGER:
-        horizon = float(graph.step * (len(graph.layers) - 1) * longer)
+    steps = len(graph.layers) - 1
+    for horizon in (float(graph.step * steps * n) for n in TIMES_LONGER if short_of_goal):
         if _opens(graph, {"horizon_s": horizon}):
             yield f"--horizon {horizon:g}"
             break
-        longer *= 2
-    finer = 2
-    while finer <= MOST_TIMES_FINER and (len(graph.layers) - 1) * finer < MAX_LAYERS:
-        step = float(graph.step / finer)
+    for step in (float(graph.step / n) for n in TIMES_FINER if steps * n < MAX_LAYERS):
         if _opens(graph, {"step_s": step}):
             yield f"--step {step:g}"
             break
-        finer *= 2
     if graph.extent != "body" and _opens(graph, {"extent": "body"}):
         yield "--extent body"
     if graph.adjacency != "touch" and _opens(graph, {"adjacency": "touch"}):

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from types import ModuleType
 from typing import TYPE_CHECKING, NamedTuple, TypedDict, get_args
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
@@ -82,15 +83,9 @@ def navigation_graph(
     R0608 for an unknown partition, adjacency or extent, R0770 for invalid bounds, R0718 for too
     many obstacles and layers.
     """
-    plan, times = _planned(
-        scenario,
-        partition=partition,
-        adjacency=adjacency,
-        extent=extent,
-        step_s=step_s,
-        horizon_s=horizon_s,
-        bounds=bounds,
-    )
+    options: GraphOptions = {"partition": partition, "adjacency": adjacency, "extent": extent}
+    options |= {"step_s": step_s, "horizon_s": horizon_s, "bounds": bounds}
+    plan, times = _planned(scenario, options)
     if step_s is not None or scenario.account is None:
         return _cut(plan, times)
     free = step_that_leaves_room(plan.scenario, times, plan.partition, plan.extent)
@@ -120,7 +115,7 @@ def has_way(scenario: Scenario, **options: Unpack[GraphOptions]) -> bool:
     Only cells on paths from the start are computed, and no margins. Raises RulecError as
     ``navigation_graph`` does.
     """
-    plan, times = _planned(scenario, **options)
+    plan, times = _planned(scenario, options)
     graph = _reached(plan, times)
     return graph is not None and (plan.bounds is None or has_way_within(graph, plan.bounds))
 
@@ -132,9 +127,15 @@ def has_way_within(graph: NavigationGraph, bounds: MotionBounds) -> bool:
 
 def within(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
     """The part of a graph that ego can drive within bounds of motion."""
-    from rulec.partition.motion.reachable_graph import reachable  # NumPy, only if needed
+    kept: NavigationGraph = _motion().reachable(graph, bounds)
+    return kept
 
-    return reachable(graph, bounds)
+
+def _motion() -> ModuleType:
+    """What bounds of motion need: NumPy, 0.1 s, which graphs without bounds do not."""
+    from rulec.partition.motion import reachable_graph
+
+    return reachable_graph
 
 
 def _has_way_with(most: float, graph: NavigationGraph) -> bool:
@@ -166,19 +167,11 @@ class _Plan:
         return MOST_BORDERS if self.partition == "fine" and self.bounds is not None else 1
 
 
-def _planned(
-    scenario: Scenario,
-    *,
-    partition: PartitionName | None = None,
-    adjacency: cell_links.AdjacencyName = "touch",
-    extent: ExtentName | None = None,
-    step_s: float | None = None,
-    horizon_s: float | None = None,
-    bounds: MotionBounds | str | None = None,
-) -> tuple[_Plan, Timing]:
-    own = scenario.ego.bounds
-    bounds = read_bounds(bounds, own) if isinstance(bounds, str) else bounds or own
-    partition = partition or "paper"
+def _planned(scenario: Scenario, options: GraphOptions) -> tuple[_Plan, Timing]:
+    own, given = scenario.ego.bounds, options.get("bounds")
+    bounds = read_bounds(given, own) if isinstance(given, str) else given or own
+    partition, adjacency = options.get("partition") or "paper", options.get("adjacency", "touch")
+    extent, step_s = options.get("extent"), options.get("step_s")
     if extent is None:
         extent = "clearance" if bounds is not None and scenario.account is not None else "lane"
     if bounds not in (None, own):
@@ -196,6 +189,7 @@ def _planned(
                 help=did_you_mean(str(name), known),
             )
     step_s = scenario.step_s if step_s is None else step_s
+    horizon_s = options.get("horizon_s")
     if horizon_s is None:
         horizon_s = scenario.horizon_s
         if scenario.account is not None and scenario.account.map_ends:
@@ -218,13 +212,11 @@ def _cut(plan: _Plan, times: Timing) -> NavigationGraph:
     if plan.bounds is None:
         steps = edges(layers, onward)
         return _graph(plan, times, places, start=start, layers=layers, steps=steps)
-    from rulec.partition.motion import reachable_graph  # NumPy, only if needed
-
     ego, step_s = plan.scenario.ego, float(times.step)
-    near = reachable_graph.cells_within_reach(layers, ego, plan.bounds, step_s)
+    near = _motion().cells_within_reach(layers, ego, plan.bounds, step_s)
     steps = edges(layers, onward, plan.borders, near)
     graph = _graph(plan, times, places, start=start, layers=layers, steps=steps)
-    return reachable_graph.reachable(graph, plan.bounds)
+    return within(graph, plan.bounds)
 
 
 def _reached(plan: _Plan, times: Timing) -> NavigationGraph | None:

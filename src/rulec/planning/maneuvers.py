@@ -29,7 +29,7 @@ from rulec.planning.product.possible_instances import HARD, SOFT, violations
 from rulec.planning.ranking.cell_tracks import CellTracks, cell_tracks
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_classes, variants
-from rulec.planning.ranking.least_violating import RankedManeuver, front, ranked, with_penalty
+from rulec.planning.ranking.least_violating import RankedManeuver, Ranking
 from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of, with_doubt
 from rulec.planning.ranking.proven import MOST_TRIED, least_promised, proven, with_trajectory
 from rulec.planning.ranking.pruning import (
@@ -215,7 +215,7 @@ class Maneuvers(Rows):
         is known, what is surely violated counts. Raises RulecError as ``evaluate`` does, for soft
         rules too.
         """
-        best = _first(n, front(*self._ranking))
+        best = _first(n, self._ranking.front())
         return [maneuver for penalty in best for maneuver in self._of_penalty(1, penalty, 1)]
 
     @checked_kinds
@@ -226,7 +226,7 @@ class Maneuvers(Rows):
         not everything is known, what is surely violated counts, and of hard rules whether all are
         sure to be kept. Raises RulecError as ``best`` does.
         """
-        penalties = ranked(*self._ranking)
+        penalties = self._ranking.ranked()
         return _first(
             n, chain.from_iterable(self._of_penalty(*penalty, n) for penalty in penalties)
         )
@@ -333,17 +333,17 @@ class Maneuvers(Rows):
         return node_transformers(self.paths, every, perhaps=True)
 
     @cached_property
-    def _ranking(self) -> tuple[NodeTransformers, PenaltyOrder, int]:
-        """The instances that decide ranks, their order, and how many are there for doubt."""
+    def _ranking(self) -> Ranking:
+        """What decides ranks; instances of hard rules are there twice if some are in doubt."""
         sure = self._every_perhaps
         if sure is self._every or not self.satisfying:
-            return sure, self._ranks, 0
-        return sure.beside(self.hard), with_doubt(self._ranks), len(self.hard.instances)
+            return Ranking(sure, self._ranks)
+        doubts = len(self.hard.instances)
+        return Ranking(sure.beside(self.hard), with_doubt(self._ranks), doubts)
 
     def _of_penalty(self, place: int, penalty: Penalty, n: int) -> Iterator[RankedManeuver]:
         """The ``n`` cheapest maneuvers with a penalty."""
-        transformers, order, doubts = self._ranking
-        product, ranks = with_penalty(transformers, order, penalty, doubts), self._ranks
+        product, ranks = self._ranking.with_penalty(penalty), self._ranks
         for maneuver in self._drivable(product, n):
             verdict = self.verdict(maneuver)
             least = ranks.of_violations(verdict.violations, self.rules)

@@ -76,37 +76,34 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
     names = [form.name for form in FORMATS]
     if source.form is not None and source.form not in names:
         raise ValueError(f"`form` is one of {', '.join(names)}, not {source.form!r}")
-    with contained("not read", SourceLocation(str(source.path))):
-        yield from _recordings(source)
-
-
-def _recordings(source: RecordingSource) -> Iterator[Recording]:
     # NumPy, only for those who have recordings.
     from rulec.recordings.doubts.examination import examination_of
 
-    form = _format_of(source)
-    examined = examination_of(source, takes_map=form.takes_map)
-    if source.map_path is not None and not form.takes_map:
-        raise OTHER_CHOICE.error(
-            SourceLocation(str(source.path)),
-            f"`{source.path.name}` has its own roads, and takes no map",
-            help="leave out --map, which is for recordings without roads of their own",
+    place = SourceLocation(str(source.path))
+    with contained("not read", place):
+        form = _format_of(source)
+        examined = examination_of(source, takes_map=form.takes_map)
+        if source.map_path is not None and not form.takes_map:
+            raise OTHER_CHOICE.error(
+                place,
+                f"`{source.path.name}` has its own roads, and takes no map",
+                help="leave out --map, which is for recordings without roads of their own",
+            )
+        if source.scenario_id is None:
+            yield from map(examined, form.read(source))
+            return
+        names = list(form.names(source.path)) if form.names is not None else []
+        if form.names is None or source.scenario_id in names:
+            for recording in form.read(source):
+                if recording.name == source.scenario_id:
+                    yield examined(recording)
+                    return
+                names.append(recording.name)
+        raise NOT_IN_RECORDING.error(
+            place,
+            f"there is no scenario `{source.scenario_id}` in the file",
+            help=did_you_mean(source.scenario_id, names) or f"choose {_some(names)}",
         )
-    if source.scenario_id is None:
-        yield from map(examined, form.read(source))
-        return
-    names = list(form.names(source.path)) if form.names is not None else []
-    if form.names is None or source.scenario_id in names:
-        for recording in form.read(source):
-            if recording.name == source.scenario_id:
-                yield examined(recording)
-                return
-            names.append(recording.name)
-    raise NOT_IN_RECORDING.error(
-        SourceLocation(str(source.path)),
-        f"there is no scenario `{source.scenario_id}` in the file",
-        help=did_you_mean(source.scenario_id, names) or f"choose {_some(names)}",
-    )
 
 
 def read_recording(source: RecordingSource) -> Recording:

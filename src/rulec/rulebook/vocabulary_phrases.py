@@ -7,16 +7,13 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 from rulec.diagnostics import Source
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.rulebook_model import SourceFile
 from rulec.toml import parsed_toml
-
-if TYPE_CHECKING:
-    from rulec.logic.sentences.language import TypeWords
 
 
 class HasSources(Protocol):
@@ -39,11 +36,14 @@ def phrases_of(rulebook: HasSources, language: str = "en") -> Mapping[str, str]:
     return phrases
 
 
-def types_of(rulebook: HasSources, language: str) -> Mapping[str, TypeWords]:
-    """How to express the types of a rulebook; none for its own types."""
-    types: dict[str, TypeWords] = {}
+def types_of(rulebook: HasSources, language: str) -> Mapping[str, Sequence[str]]:
+    """The words for the types of a rulebook, as in ``TypeWords``.
+
+    There are none for its own types, and none in English, which has rules.
+    """
+    types: dict[str, Sequence[str]] = {}
     for name in _vocabularies(rulebook):
-        types.update(types_in(name, language))
+        types.update(_file(f"{name}.{language}.toml").get("types", {}))
     return types
 
 
@@ -71,15 +71,6 @@ def vocabularies_with_phrases() -> Sequence[str]:
     files = _file_of("").glob("*.en.toml")
     names = (file.name.removesuffix(".en.toml") for file in files)
     return sorted(name for name in names if name != "titles")
-
-
-def types_in(vocabulary: str, language: str) -> Mapping[str, TypeWords]:
-    """How to express the types of a shipped vocabulary; none in English, which has rules."""
-    # Patterns of sentences, 10 ms: whoever asks for phrases alone does without.
-    from rulec.logic.sentences.language import TypeWords
-
-    types = _file(f"{vocabulary}.{language}.toml").get("types", {})
-    return {name: TypeWords(*words) for name, words in types.items()}
 
 
 def titles_in(language: str) -> Mapping[str, str]:

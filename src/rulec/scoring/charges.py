@@ -19,8 +19,7 @@ from rulec.extraction.recording_verdicts import DriveVerdict, JudgedDrive
 from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.batch.findings import Findings, JudgedTrace
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleFor, Verdict, Violation, rule_for
-from rulec.scoring.candidate_score import CandidateScore, lost_candidate
-from rulec.scoring.scored_again import without_drives
+from rulec.scoring.candidate_score import CandidateScore, lost_candidate, without_drives
 
 _NOBODY = -1
 

@@ -26,10 +26,9 @@ from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.garbage_collection import no_garbage_collection
 from rulec.monitoring.verdict import NotJudged, RuleFor, Violation, rule_for
 from rulec.recordings.recording import Participant
-from rulec.scoring.candidate_score import CandidateScore, lost_candidate
+from rulec.scoring.candidate_score import CandidateScore, lost_candidate, without_drives
 from rulec.scoring.charges import CandidateCharges, CandidateScores, forget_reasons, open_of
-from rulec.scoring.judged_anew import judged_anew, kept_since, opened_by, verdicts_of
-from rulec.scoring.scored_again import without_drives
+from rulec.scoring.rescoring import kept_since, opened_by, rescored, verdicts_of
 from rulec.scoring.scores import Scores
 from rulec.scoring.scoring_messages import BAD_CANDIDATES
 from rulec.scoring.traffic_world import TrafficWorld
@@ -136,7 +135,7 @@ def _scored(
             open_before = kept(open_of([own for _, own in block], rules_before))
         charges = _charges(block, first, (beside, back), open_before)
         if before.violated:
-            scores = judged_anew(
+            scores = rescored(
                 [candidate_charges.score() for candidate_charges in charges],
                 before.violated,
                 at_step,

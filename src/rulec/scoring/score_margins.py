@@ -18,7 +18,7 @@ from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import RuleFor, Violation, rule_for
 from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import at
-from rulec.scoring.judged_anew import verdicts_of
+from rulec.scoring.rescoring import verdicts_of
 from rulec.trace.trace_arrays import stretches_of
 from rulec.trace.trace_model import present_in
 from rulec.value_display import short_repr

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rulec.vocabulary.dimensions import REFUSED, Dimension, Refusal, Unit
@@ -66,14 +67,12 @@ def pint_unit(name: str) -> Unit | Refusal | None:
 def _registry() -> UnitRegistry[Any] | None:
     """Pint's registry of units; None if Pint is missing or broken."""
     try:
-        from importlib.resources import files  # 0.2 s, only for rare units
-
         import pint  # 0.2 s, only for rare units
 
         registry: UnitRegistry[Any] = pint.UnitRegistry(
             None, non_int_type=Fraction, on_redefinition="ignore"
         )
-        registry.load_definitions(str(files("pint") / "default_en.txt"))
+        registry.load_definitions(Path(pint.__file__).with_name("default_en.txt"))
         for constant in _IRRATIONAL:
             registry.define(f"{constant} = [{constant}]")
     except Exception:  # an installation can be broken in any way

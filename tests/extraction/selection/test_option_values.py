@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.selection import assumption_options
+from rulec.extraction.traces.assumed_values import assumption_options
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds, threshold_options
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 

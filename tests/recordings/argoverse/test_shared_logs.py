@@ -7,7 +7,7 @@ from pyarrow import feather, parquet
 from rulec import compile_rulebook, read_recording
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives, selected_drives
-from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
+from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.extraction.traces.recorded_drive import NoDrive
 from support.builders.recorded_data import RECORDINGS
 
@@ -80,7 +80,7 @@ def test_ego_does_not_slip_sideways(sensor):
 @pytest.mark.parametrize("name", ["motion", "sensor"])
 def test_words_are_those_that_the_format_can_tell(name, request):
     found = request.getfixturevalue(name)
-    told = told_words(selected_drives(found, RequestedDrives(), name))
+    told = selected_drives(found, RequestedDrives(), name).told_words()
     # Nobody there runs on rails, or stops to let people in
     of_nobody = {"conflict_with_rail", "boarding", "leaving_stop"}
     missing = TELLABLE_WORDS[f"argoverse-{name}"] - told

@@ -9,7 +9,6 @@ import pytest
 from rulec import compile_rulebook
 from rulec.diagnostics import RulecError
 from rulec.extraction.selection import RequestedDrives, selected_drives
-from rulec.extraction.tellable_words import told_words
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
@@ -178,7 +177,7 @@ def test_of_crossings_nothing_is_told_where_the_conversion_leaves_them_out(tmp_p
         ring = [[0.0, -2.0], [4.0, -2.0], [4.0, 6.0], [0.0, 6.0]]
         dictionary["map_features"]["9"] = {"type": "CROSSWALK", "polygon": ring}
     recording = read(tmp_path, dictionary)
-    told = told_words(selected_drives(recording, RequestedDrives(), "some", "right"))
+    told = selected_drives(recording, RequestedDrives(), "some", "right").told_words()
     words = {"crossing_zone", "distance_to_crossing", "nearest_to_crossing"}
     assert (words <= told, bool(words & told)) == (kept, kept)
 

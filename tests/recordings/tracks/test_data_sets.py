@@ -7,7 +7,7 @@ import pytest
 
 from rulec import RulecError, read_recording
 from rulec.extraction.selection import RequestedDrives, selected_drives
-from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
+from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.recordings.recording_files import is_recording, read_recordings
 from rulec.recordings.recording_format import RecordingSource
 from support.builders import osi_traces as osi
@@ -81,7 +81,7 @@ def test_highd_without_a_limit(tmp_path):
 def told(recording):
     drives = selected_drives(recording, RequestedDrives(), "some.csv", "right")
     # Where nobody has doors or rails these are told, too
-    return told_words(drives) - {"boarding", "conflict_with_rail", "leaving_stop"}
+    return drives.told_words() - {"boarding", "conflict_with_rail", "leaving_stop"}
 
 
 def test_what_highd_can_tell(tmp_path):

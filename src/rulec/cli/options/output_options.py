@@ -14,11 +14,12 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, fields, is_dataclass
 from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, cast
 
 import click
 
 from rulec.cli import lazy_imports as lazy
+from rulec.cli.options.verb_class import Decorated, option
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.files.file_messages import OVERWRITES_INPUT
 from rulec.files.read_files import from_here
@@ -26,8 +27,6 @@ from rulec.files.work_trees import is_ordinary
 from rulec.files.written_files import refuse_unwritable
 from rulec.report.findings.finding_formats import ENDINGS
 from rulec.report.text.console import print_remark
-
-Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 Endings = Mapping[str, Sequence[str]]
 """Format -> its file extensions. The first format is the default."""
@@ -99,13 +98,10 @@ class RenamedOption(click.Option):
             self.opts = shown
 
 
-def input_format_option(
-    names: Sequence[str], content: str, former: Sequence[str] = ()
-) -> Callable[[Decorated], Decorated]:
+def input_format_option(names: Sequence[str], content: str, former: Sequence[str] = ()) -> Any:
     """``--input-format NAME``, which formerly had the names ``former``."""
-    return click.option(
+    return option(
         "--input-format",
-        "input_format",
         cls=RenamedOption,
         former=former,
         metavar="NAME",
@@ -124,10 +120,10 @@ def output_options(
     alias: str = "",
     instead: str = "",
     folders: bool = False,
-) -> Callable[[Decorated], Decorated]:
+) -> Any:
     """``-o FILE``, ``--output-format NAME`` and, if ``json`` is a format, ``--json``.
 
-    The verb receives ``to``, an Output; with ``multiple`` a tuple of them.
+    The verb receives an Output; with ``multiple`` a tuple of them.
 
     Args:
         endings: the formats.
@@ -173,33 +169,38 @@ def output_options(
             )
         )
 
-    def decorate(function: Decorated) -> Decorated:
-        @wraps(function)
-        def called(**values: Any) -> Any:
-            outputs, output_format = values.pop("outputs"), values.pop("output_format")
-            named = {f"--output-format {output_format}": output_format}
-            named |= {"--json": "json" if has_json and values.pop("json_output") else None}
-            also = values.get(alias)
-            named |= {f"--{alias} {also}": also if also in endings else None}
-            form = _one_format({option: name for option, name in named.items() if name})
-            if len(outputs) > 1 and not multiple:
-                raise click.UsageError("-o is given twice; there is one answer.")
-            if len(outputs) > 1 and form is not None:
-                raise click.UsageError("With several files, the ending of each decides its format.")
-            to = tuple(
-                Output(path, chosen_format(endings, path, form, instead=instead))
-                for path in outputs or (STANDARD_OUTPUT,)
-            )
-            _refuse_doubtful(to, values)
-            with _old_files_told(to):
-                return function(**values, to=to if multiple else to[0])
+    def make(parameter: str) -> Callable[[Decorated], Decorated]:
+        def decorate(function: Decorated) -> Decorated:
+            @wraps(function)
+            def called(**values: Any) -> Any:
+                outputs, output_format = values.pop("outputs"), values.pop("output_format")
+                named = {f"--output-format {output_format}": output_format}
+                named |= {"--json": "json" if has_json and values.pop("json_output") else None}
+                also = values.get(alias)
+                named |= {f"--{alias} {also}": also if also in endings else None}
+                form = _one_format({option: name for option, name in named.items() if name})
+                if len(outputs) > 1 and not multiple:
+                    raise click.UsageError("-o is given twice; there is one answer.")
+                if len(outputs) > 1 and form is not None:
+                    raise click.UsageError(
+                        "With several files, the ending of each decides its format."
+                    )
+                to = tuple(
+                    Output(path, chosen_format(endings, path, form, instead=instead))
+                    for path in outputs or (STANDARD_OUTPUT,)
+                )
+                _refuse_doubtful(to, values)
+                with _old_files_told(to):
+                    return function(**values, **{parameter: to if multiple else to[0]})
 
-        decorated = cast("Decorated", called)
-        for option in reversed(options):
-            decorated = option(decorated)
-        return decorated
+            decorated = cast("Decorated", called)
+            for one in reversed(options):
+                decorated = one(decorated)
+            return decorated
 
-    return decorate
+        return decorate
+
+    return make
 
 
 def chosen_format(

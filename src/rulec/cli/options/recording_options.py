@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -10,7 +11,8 @@ import click
 
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import RenamedOption, input_format_option
-from rulec.cli.options.shared_options import asked, finite, gathered
+from rulec.cli.options.shared_options import finite
+from rulec.cli.options.verb_class import gathered, option
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_format import RecordingSource
 from rulec.trace import Value
@@ -27,7 +29,7 @@ _RECORDING_FORMATS = tuple(form.name for form in FORMATS)
 class RecordingOptions:
     """How to read recorded traffic, or traces."""
 
-    map_path: Path | None = asked(
+    map_path: Path | None = option(
         "--map",
         cls=RenamedOption,
         former=["--net"],
@@ -36,12 +38,12 @@ class RecordingOptions:
         help="The map, for recorded traffic that contains no roads.  [default: for SUMO data, "
         "the net that the file names, or the only .net.xml file beside it]",
     )
-    scenario_id: str | None = asked(
+    scenario_id: str | None = option(
         "--scenario",
         metavar="ID",
         help="Read only this recording of a file that contains several.",
     )
-    frame_rate: float | None = asked(
+    frame_rate: float | None = option(
         "--frame-rate",
         metavar="HZ",
         type=click.FloatRange(min=0, min_open=True),
@@ -49,11 +51,9 @@ class RecordingOptions:
         help="Frames a second of recorded traffic: of a table with the column `frame`, or to "
         "confirm time steps that speeds contradict.",
     )
-    input_format: str | None = asked(
-        make=lambda _: input_format_option(
-            _RECORDING_FORMATS,
-            "recorded traffic, one of `rulec list formats`.  [default: detected from the file]",
-        )
+    input_format: str | None = input_format_option(
+        _RECORDING_FORMATS,
+        "recorded traffic, one of `rulec list formats`.  [default: detected from the file]",
     )
 
     @property
@@ -71,13 +71,11 @@ class RecordingOptions:
 class RecordingOrTraceOptions(RecordingOptions):
     """The same for files that may also be traces."""
 
-    input_format: str | None = asked(
-        make=lambda _: input_format_option(
-            (*_RECORDING_FORMATS, *TRACE_FORMATS),
-            "traces (jsonl, csv or parquet) or of recorded traffic (one of `rulec list formats`).  "
-            "[default: detected from the file; for traces its ending, else jsonl]",
-            former=["--format"],
-        )
+    input_format: str | None = input_format_option(
+        (*_RECORDING_FORMATS, *TRACE_FORMATS),
+        "traces (jsonl, csv or parquet) or of recorded traffic (one of `rulec list formats`).  "
+        "[default: detected from the file; for traces its ending, else jsonl]",
+        former=["--format"],
     )
 
 
@@ -85,7 +83,7 @@ class RecordingOrTraceOptions(RecordingOptions):
 class DrivesOptions:
     """How the drives of a recording become traces, and what is assumed about traces."""
 
-    assumed: tuple[str, ...] = asked(
+    assumed: tuple[str, ...] = option(
         "--assume",
         multiple=True,
         metavar="NAME=VALUE",
@@ -93,26 +91,23 @@ class DrivesOptions:
         "one, in recorded traffic always. Or `defaults`: missing values get their default, and "
         "every trace is complete.",
     )
-    thresholds: tuple[str, ...] = asked(
+    thresholds: tuple[str, ...] = option(
         "--threshold",
         multiple=True,
         metavar="NAME=NUMBER",
         help="Recorded traffic: set a threshold used to derive words, such as near_m=200.",
     )
-    as_recorded: bool = asked(
+    as_recorded: bool = option(
         "--as-recorded",
         is_flag=True,
         help="Recorded traffic: do not mirror it, even if the rulebook's traffic keeps to the "
         "other side of the road.",
     )
 
-    def check_thresholds(self) -> None:
-        """Check thresholds before any work. Raises click.UsageError."""
-        if self.thresholds:
-            try:
-                lazy.threshold_options(self.thresholds)
-            except ValueError as problem:
-                raise click.UsageError(_sentence(problem)) from None
+    def read_thresholds(self) -> lazy.Thresholds:
+        """The thresholds. Raises click.UsageError."""
+        with _refused():
+            return lazy.threshold_options(self.thresholds)
 
     def requested(
         self, egos: tuple[str, ...], vocabulary: Vocabulary | None
@@ -124,30 +119,37 @@ class DrivesOptions:
         """
         if self.assumed and vocabulary is None:
             raise click.UsageError("--assume needs a rulebook that has these words: --rulebook R")
-        texts = [text for text in self.assumed if text != "defaults"]
-        try:
-            return lazy.RequestedDrives(
-                egos,
-                lazy.threshold_options(self.thresholds),
-                {} if vocabulary is None else lazy.assumption_options(texts, vocabulary),
-                self.as_recorded,
-                len(texts) < len(self.assumed),
-            )
-        except ValueError as problem:
-            raise click.UsageError(_sentence(problem)) from None
+        thresholds = self.read_thresholds()
+        values, defaults = ({}, False) if vocabulary is None else _assumed(self.assumed, vocabulary)
+        return lazy.RequestedDrives(egos, thresholds, values, self.as_recorded, defaults)
 
 
-egos_option = click.option(
+egos_option = option(
     "--ego",
-    "egos",
     multiple=True,
     metavar="ID",
     help="Recorded traffic: use only this vehicle's drive.  [default: every vehicle's]",
 )
 
-recording_options = gathered("recorded", RecordingOptions)
-recording_or_trace_options = gathered("recorded", RecordingOrTraceOptions)
-drives_options = gathered("drives", DrivesOptions)
+recording_options = gathered(RecordingOptions)
+recording_or_trace_options = gathered(RecordingOrTraceOptions)
+drives_options = gathered(DrivesOptions)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrafficOptions:
+    """Which vehicles' drives, and how recorded traffic or traces are read."""
+
+    egos: tuple[str, ...] = egos_option
+    drives: DrivesOptions = drives_options
+    recorded: RecordingOptions = recording_or_trace_options
+
+    def requested(self, vocabulary: Vocabulary) -> lazy.RequestedDrives:
+        """The drives, whose words are of a vocabulary. Raises click.UsageError."""
+        return self.drives.requested(self.egos, vocabulary)
+
+
+traffic_options = gathered(TrafficOptions)
 
 _NAMES = {
     "assumed": "--assume",
@@ -172,16 +174,23 @@ def assumptions(
     ends: Ending | None, texts: Sequence[str], vocabulary: Vocabulary
 ) -> lazy.Assumptions:
     """Assumptions about traces. Raises click.UsageError."""
-    values: Mapping[str, Value] = {}
-    if named := [text for text in texts if text != "defaults"]:
-        try:
-            values = lazy.assumption_options(named, vocabulary)
-        except ValueError as problem:
-            raise click.UsageError(_sentence(problem)) from None
-    return lazy.Assumptions(ends, values, len(named) < len(texts))
+    return lazy.Assumptions(ends, *_assumed(texts, vocabulary))
 
 
-def _sentence(problem: ValueError) -> str:
-    """The message of an error as a sentence, without a second mark after a question mark."""
-    text = str(problem)
-    return text if text.endswith("?") else f"{text}."
+def _assumed(texts: Sequence[str], vocabulary: Vocabulary) -> tuple[Mapping[str, Value], bool]:
+    """The values to assume, and whether missing ones get their default."""
+    named = [text for text in texts if text != "defaults"]
+    with _refused():
+        values = lazy.assumption_options(named, vocabulary) if named else {}
+    return values, len(named) < len(texts)
+
+
+@contextmanager
+def _refused() -> Iterator[None]:
+    """Refuse a text of an option in which something is wrong. Raises click.UsageError."""
+    try:
+        yield
+    except ValueError as problem:
+        # A question mark ends a sentence, too
+        text = str(problem)
+        raise click.UsageError(text if text.endswith("?") else f"{text}.") from None

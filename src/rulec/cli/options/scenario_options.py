@@ -12,9 +12,10 @@ import click
 
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.recording_options import RecordingOptions, assumptions
-from rulec.cli.options.shared_options import asked, combined, finite, gathered
+from rulec.cli.options.shared_options import finite
 from rulec.cli.options.shell_completion import complete_scenarios
 from rulec.cli.options.standard_input import file_named
+from rulec.cli.options.verb_class import argument, gathered, option
 from rulec.vocabulary import Vocabulary
 
 _CELLS = ("step_s", "horizon_s", "extent", "adjacency", "bounds")
@@ -44,25 +45,25 @@ def _prediction(
 class SceneOptions(RecordingOptions):
     """How a scenario is cut into cells, and what is chosen from a recorded one."""
 
-    step_s: float | None = asked(
+    step_s: float | None = option(
         "--step",
         type=float,
         metavar="S",
         help="The planning interval, in s.",
     )
-    horizon_s: float | None = asked(
+    horizon_s: float | None = option(
         "--horizon",
         type=float,
         metavar="T",
         help="The planning horizon, in s.",
     )
-    partition: str | None = asked(
+    partition: str | None = option(
         "--partition",
         type=click.Choice(["paper", "fine"]),
         help="Divide the space around an obstacle into four regions (paper) or eight (fine).  "
         "[default: what the rulebook needs; paper without a rulebook]",
     )
-    extent: str | None = asked(
+    extent: str | None = option(
         "--extent",
         type=click.Choice(["lane", "clearance", "body"]),
         help="How much space an obstacle occupies across the road: `lane` is every lane it "
@@ -70,7 +71,7 @@ class SceneOptions(RecordingOptions):
         "`body` is the area its body sweeps plus half of ego's width on either side.  "
         "[default: clearance in a recorded scene with bounds, else lane]",
     )
-    adjacency: str = asked(
+    adjacency: str = option(
         "--adjacency",
         type=click.Choice(["touch", "edge", "forward"]),
         default="touch",
@@ -78,7 +79,7 @@ class SceneOptions(RecordingOptions):
         help="Which cells are neighbours: those that touch, even in a single point; those that "
         "share an edge; or those that share an edge and do not lie only behind.",
     )
-    bounds: str | None = asked(
+    bounds: str | None = option(
         "--bounds",
         metavar="BOUNDS",
         help="Keep only maneuvers that ego can drive within these motion bounds: a vehicle "
@@ -86,13 +87,13 @@ class SceneOptions(RecordingOptions):
         "all paths through cells.  [default: the scenario's own; in recorded scenes those of "
         "ego's vehicle type]",
     )
-    ego: str | None = asked(
+    ego: str | None = option(
         "--ego",
         metavar="ID",
         help="Recorded scenes: the vehicle or planning problem to take as ego.  [default: the "
         "first planning problem]",
     )
-    at_s: float | None = asked(
+    at_s: float | None = option(
         "--at-time",
         type=float,
         callback=finite,
@@ -100,13 +101,13 @@ class SceneOptions(RecordingOptions):
         help="Recorded scenes: the time to start from, in s.  [default: that of the planning "
         "problem, or when the vehicle first appears]",
     )
-    reference: str | None = asked(
+    reference: str | None = option(
         "--reference",
         metavar="LANELET",
         help="Recorded scenes: the lanelet whose centre line is the reference line along the "
         "road.  [default: the one ego is on]",
     )
-    prediction: str | Mapping[str, Fraction] = asked(
+    prediction: str | Mapping[str, Fraction] = option(
         "--prediction",
         callback=_prediction,
         default="recorded",
@@ -115,7 +116,7 @@ class SceneOptions(RecordingOptions):
         help="Recorded scenes: other traffic moves as `recorded`, or with `constant` "
         "acceleration, or either with a probability, as in `recorded=0.7,constant=0.3`.",
     )
-    ego_width_m: float | None = asked(
+    ego_width_m: float | None = option(
         "--ego-width",
         type=click.FloatRange(min=0, max=100),
         callback=finite,
@@ -124,7 +125,7 @@ class SceneOptions(RecordingOptions):
         "[default: the width of the recorded vehicle, if ego is one; else the one in its "
         "bounds with `clearance`, and a point with `body`]",
     )
-    congested_below_kmh: float = asked(
+    congested_below_kmh: float = option(
         "--congested-below",
         type=click.FloatRange(min=0),
         callback=finite,
@@ -150,14 +151,14 @@ class SceneOptions(RecordingOptions):
 class ReadingOptions:
     """What is assumed where a scenario says nothing."""
 
-    assumed: tuple[str, ...] = asked(
+    assumed: tuple[str, ...] = option(
         "--assume",
         multiple=True,
         metavar="NAME=VALUE",
         help="A value to assume wherever the scenario does not provide one, such as "
         "built_up=true; or `defaults`, which gives unknown values their default.",
     )
-    told_only: bool = asked(
+    told_only: bool = option(
         "--told-only",
         is_flag=True,
         help="Treat values that the scenario does not mention as unknown instead of giving "
@@ -183,19 +184,12 @@ class ReadingOptions:
         return {"assumptions": assumed, "told_only": self.told_only}
 
 
-cell_options = gathered("cut", SceneOptions)
+cell_options = gathered(SceneOptions)
 
-graph_options = combined(
-    [click.argument("scenario", shell_complete=complete_scenarios), cell_options]
-)
-"""The argument for one scenario, and how it is cut into cells."""
+scenario_argument = argument(shell_complete=complete_scenarios)
 
-scenarios_argument = click.argument(
-    "scenarios",
-    nargs=-1,
-    required=True,
-    metavar="SCENARIO...",
-    shell_complete=complete_scenarios,
+scenarios_argument = argument(
+    nargs=-1, required=True, metavar="SCENARIO...", shell_complete=complete_scenarios
 )
 
-reading_options = gathered("missing", ReadingOptions)
+reading_options = gathered(ReadingOptions)

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import field, fields, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fnmatch import fnmatchcase
 from fractions import Fraction
-from functools import partial, wraps
 from glob import has_magic
 from math import isfinite
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any
 
 import click
 from click.core import ParameterSource
@@ -23,12 +22,11 @@ from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import RenamedOption, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.options.standard_input import read_as_file
+from rulec.cli.options.verb_class import Decorated, argument, option
 from rulec.diagnostics import did_you_mean
 from rulec.report.findings.finding_formats import FORMATS
 from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
-
-Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 RULEBOOK_HELP = (
     "The rulebook: its name, its source (.rules) or its compiled form (.json); `-` is standard "
@@ -40,44 +38,11 @@ MOST_JOBS = 256
 _SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/(?!0+$)[0-9]{1,9})?")
 
 
-def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], Decorated]:
-    """Combine several options into one decorator, in the order of the help text."""
-
-    def decorate(function: Decorated) -> Decorated:
-        for option in reversed(options):
-            function = option(function)
-        return function
-
-    return decorate
-
-
-def asked(*names: str, make: Callable[..., Any] = click.option, **settings: Any) -> Any:
-    """A field whose value an option gives, which ``make`` makes with these settings."""
-    return field(metadata={"option": partial(make, *names, **settings)})
-
-
-def gathered(parameter: str, kind: type[Any]) -> Callable[[Decorated], Decorated]:
-    """The options that the fields of a class ask for; a verb gets an object of it."""
-    # Own options come before those that all recordings have.
-    order = sorted(fields(kind), key=lambda one: one.name not in kind.__annotations__)
-    options = [one.metadata["option"](one.name) for one in order]
-
-    def decorate(function: Decorated) -> Decorated:
-        @wraps(function)
-        def called(**values: Any) -> Any:
-            own = {one.name: values.pop(one.name) for one in order}
-            return function(**values, **{parameter: kind(**own)})
-
-        return combined(options)(cast("Decorated", called))
-
-    return decorate
-
-
 def choice_option(
     name: str, choices: Sequence[str], help_text: str, former: Sequence[str] = ()
-) -> Callable[[Decorated], Decorated]:
+) -> Any:
     """An option with one of several words, of which the first is the default."""
-    return click.option(
+    return option(
         name,
         cls=RenamedOption,
         former=former,
@@ -89,12 +54,12 @@ def choice_option(
 
 
 def number_option(
-    name: str, field: str, help_text: str, least: int = 0, most: int | None = None, **settings: Any
-) -> Callable[[Decorated], Decorated]:
+    name: str, help_text: str, least: int = 0, most: int | None = None, **settings: Any
+) -> Any:
     """An option for an integer from ``least`` to ``most``, with further settings of click."""
     kind = click.IntRange(least, most)
     settings = {"metavar": "N", "cls": RenamedOption, **settings}
-    return click.option(name, field, type=kind, show_default=True, help=help_text, **settings)
+    return option(name, type=kind, show_default=True, help=help_text, **settings)
 
 
 def beside(context: click.Context, parameter: click.Parameter, value: str | None) -> Path | None:
@@ -138,28 +103,12 @@ def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
     return value
 
 
-def only_sources(rulebooks: Iterable[str], lack: str) -> None:
-    """Refuse compiled rulebooks, with a reason such as ``"cannot be audited"``.
-
-    Raises:
-        click.UsageError: a rulebook is compiled.
-    """
-    compiled = next((rulebook for rulebook in rulebooks if rulebook.endswith(".json")), None)
-    if compiled is not None:
-        raise click.UsageError(f"`{compiled}` is compiled and {lack}; give its source")
+rulebook_argument = argument(callback=read_as_file, shell_complete=complete_rulebooks)
 
 
-rulebook_argument = click.argument(
-    "rulebook", callback=read_as_file, shell_complete=complete_rulebooks
-)
-
-
-def rulebooks_argument(
-    metavar: str = "RULEBOOK...", *, required: bool = True
-) -> Callable[[Decorated], Decorated]:
+def rulebooks_argument(metavar: str = "RULEBOOK...", *, required: bool = True) -> Any:
     """The argument ``RULEBOOK...``."""
-    return click.argument(
-        "rulebooks",
+    return argument(
         nargs=-1,
         required=required,
         metavar=metavar,
@@ -168,14 +117,12 @@ def rulebooks_argument(
     )
 
 
-def rulebooks_option(help_text: str) -> Callable[[Decorated], Decorated]:
-    """``--rulebook R``, repeatable, as the parameter ``rulebooks``."""
-    return _rulebook_option("rulebooks", help_text, required=True, callback=read_as_file)
+def rulebooks_option(help_text: str) -> Any:
+    """``--rulebook R``, repeatable."""
+    return _rulebook_option(help_text, required=True, callback=read_as_file)
 
 
-def rulebook_option(
-    why_one: str, help_text: str = RULEBOOK_HELP, *, required: bool = True
-) -> Callable[[Decorated], Decorated]:
+def rulebook_option(why_one: str, help_text: str = RULEBOOK_HELP, *, required: bool = True) -> Any:
     """``--rulebook R``; for several or a folder the error says ``why_one`` is required."""
 
     def only(context: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> Any:
@@ -184,7 +131,7 @@ def rulebook_option(
             raise click.UsageError(f"{why_one}; give each rulebook a call of its own", context)
         return read_as_file(context, parameter, values[0]) if values else None
 
-    return _rulebook_option("rulebook", help_text, required=required, callback=only)
+    return _rulebook_option(help_text, required=required, callback=only)
 
 
 def stands_for_several(reference: str) -> bool:
@@ -194,13 +141,10 @@ def stands_for_several(reference: str) -> bool:
     return os.path.isdir(reference) or (has_magic(reference) and not os.path.lexists(reference))  # noqa: PTH112 - Path raises on a null character
 
 
-def _rulebook_option(
-    field: str, help_text: str, **settings: Any
-) -> Callable[[Decorated], Decorated]:
-    return click.option(
+def _rulebook_option(help_text: str, **settings: Any) -> Any:
+    return option(
         "-r",
         "--rulebook",
-        field,
         multiple=True,
         metavar="R",
         help=help_text,
@@ -209,16 +153,15 @@ def _rulebook_option(
     )
 
 
-def step_option(help_text: str) -> Callable[[Decorated], Decorated]:
+def step_option(help_text: str) -> Any:
     """The option ``--step S``, read exactly, with the verb's own help text."""
-    return click.option("--step", "step_s", callback=_seconds, metavar="S", help=help_text)
+    return option("--step", callback=_seconds, metavar="S", help=help_text)
 
 
-def rules_option(help_text: str, former: Sequence[str] = ()) -> Callable[[Decorated], Decorated]:
+def rules_option(help_text: str, former: Sequence[str] = ()) -> Any:
     """``--rule PATTERN``, repeatable, which formerly had the names ``former``."""
-    return click.option(
+    return option(
         "--rule",
-        "patterns",
         cls=RenamedOption,
         former=former,
         multiple=True,
@@ -227,9 +170,9 @@ def rules_option(help_text: str, former: Sequence[str] = ()) -> Callable[[Decora
     )
 
 
-def topic_option(help_text: str) -> Callable[[Decorated], Decorated]:
+def topic_option(help_text: str) -> Any:
     """``--topic TOPIC``."""
-    return click.option(
+    return option(
         "--topic",
         metavar="TOPIC",
         help=f"{help_text}: a topic of the rulebook, a part of its title, or a group of topics, "
@@ -237,9 +180,8 @@ def topic_option(help_text: str) -> Callable[[Decorated], Decorated]:
     )
 
 
-end_option = click.option(
+end_option = option(
     "--end",
-    "ends",
     type=click.Choice(["cut", "complete"]),
     help="Whether traces are cut out of a longer drive or complete when they end.  [default: what "
     "each trace says, else cut if it states its step in seconds, else complete]",
@@ -263,9 +205,9 @@ def is_from(context: click.Context, field: str, source: ParameterSource) -> bool
     return context.get_parameter_source(field) is source
 
 
-def jobs_option(task: str) -> Callable[[Decorated], Decorated]:
+def jobs_option(task: str) -> Any:
     """``-j N``, read as Jobs."""
-    return click.option(
+    return option(
         "-j",
         "--jobs",
         callback=_jobs,
@@ -276,7 +218,7 @@ def jobs_option(task: str) -> Callable[[Decorated], Decorated]:
     )
 
 
-at_option = click.option(
+at_option = option(
     "--at",
     default="",
     callback=_day,
@@ -291,7 +233,7 @@ def _without_cache(context: click.Context, _: click.Parameter, value: bool) -> N
         context.with_resource(keeping(on=False))
 
 
-no_cache_option = click.option(
+_no_cache_option = click.option(
     "--no-cache",
     is_flag=True,
     expose_value=False,
@@ -299,25 +241,29 @@ no_cache_option = click.option(
     help="Do not reuse earlier answers; compute everything again.",
 )
 
-verbose_option = click.option(
+
+def no_cache_and(make: Any) -> Any:
+    """``--no-cache``, which has no parameter, and then another option."""
+
+    def both(name: str) -> Callable[[Decorated], Decorated]:
+        return lambda function: _no_cache_option(make(name)(function))
+
+    return both
+
+
+verbose_option = option(
     "-v", "--verbose", is_flag=True, help="Name each file and folder that is skipped, and why."
 )
 
-findings_options = combined(
-    [
-        output_options(
-            endings_of(*FORMATS),
-            "the findings: text that quotes the source lines, one line each, JSON, GitHub "
-            "annotations, or SARIF 2.1.0",
-        ),
-        choice_option(
-            "--fail-on",
-            ["error", "warning"],
-            "The least severe finding that makes the exit status 1.",
-        ),
-    ]
+findings_option = output_options(
+    endings_of(*FORMATS),
+    "the findings: text that quotes the source lines, one line each, JSON, GitHub annotations, or "
+    "SARIF 2.1.0",
 )
-"""How findings are written, and which of them set the exit status to 1."""
+
+fail_on_option = choice_option(
+    "--fail-on", ["error", "warning"], "The least severe finding that makes the exit status 1."
+)
 
 
 def refuse_unmatched(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import click
@@ -12,19 +12,31 @@ from rulec.diagnostics import RulecError
 from rulec.rulebook.files.search_path import available_rulebooks, available_vocabularies
 from rulec.settings import search_path
 
-
-def complete_rulebooks(
-    ctx: click.Context, param: click.Parameter, incomplete: str
-) -> list[lazy.CompletionItem]:
-    """Names of rulebooks, and files."""
-    return _named(_book_names(), incomplete)
+Completion = Callable[[click.Context, click.Parameter, str], "list[lazy.CompletionItem]"]
+"""What click calls for an argument, with its beginning."""
 
 
-def complete_sources(
-    ctx: click.Context, param: click.Parameter, incomplete: str
-) -> list[lazy.CompletionItem]:
-    """Names of rulebooks and vocabularies, and files."""
-    return _named(_book_names(vocabularies=True), incomplete)
+def _completing(names: Callable[[], Iterable[str]]) -> Completion:
+    """Names that begin so, and files."""
+
+    def complete(
+        ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[lazy.CompletionItem]:
+        fitting = [_item(name) for name in names() if name.startswith(incomplete)]
+        # The first item makes the shell also offer files whose paths begin so.
+        return [_item(incomplete, kind="file"), *fitting]
+
+    return complete
+
+
+complete_rulebooks = _completing(lambda: available_rulebooks(_folders()))
+complete_sources = _completing(
+    lambda: [
+        *available_rulebooks(_folders()),
+        *(path.stem for path in available_vocabularies(_folders())),
+    ]
+)
+complete_scenarios = _completing(lambda: lazy.available_scenarios())
 
 
 def complete_rules(
@@ -46,13 +58,6 @@ def complete_rules(
     ]
 
 
-def complete_scenarios(
-    ctx: click.Context, param: click.Parameter, incomplete: str
-) -> list[lazy.CompletionItem]:
-    """Names of scenarios, and files."""
-    return _named(lazy.available_scenarios(), incomplete)
-
-
 def complete_codes(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[lazy.CompletionItem]:
@@ -70,19 +75,6 @@ def _folders() -> tuple[Path, ...]:
         return search_path()
     except RulecError:
         return ()
-
-
-def _book_names(*, vocabularies: bool = False) -> list[str]:
-    names = list(available_rulebooks(_folders()))
-    if vocabularies:
-        names += (path.stem for path in available_vocabularies(_folders()))
-    return names
-
-
-def _named(names: Iterable[str], incomplete: str) -> list[lazy.CompletionItem]:
-    fitting = [_item(name) for name in names if name.startswith(incomplete)]
-    # The first item makes the shell also offer files whose paths begin so.
-    return [_item(incomplete, kind="file"), *fitting]
 
 
 def _item(value: str, about: str | None = None, kind: str = "plain") -> lazy.CompletionItem:

@@ -32,6 +32,16 @@ def standard_input() -> IO[bytes]:
     return cast("IO[bytes]", io.BufferedReader(_StandardInput()))
 
 
+@contextmanager
+def input_stream(path: str) -> Iterator[tuple[IO[bytes], str]]:
+    """A file opened for reading, or standard input for ``-``, and its name in messages."""
+    if path == STANDARD_INPUT:
+        yield standard_input(), "standard input"
+    else:
+        with opened(Path(path)) as stream:
+            yield stream, path
+
+
 class _StandardInput(io.RawIOBase):
     def readable(self) -> bool:
         return True

@@ -1,11 +1,61 @@
-"""The class of all verbs, which refuses repeated options and surplus arguments."""
+"""The class of all verbs, and how a function's parameters say what a verb asks for.
+
+The default of a parameter, or of a field of a class of options, is what asks for its value: it
+takes the name, and gives a decorator of click. The order is that of the help text.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import partial, wraps
+from inspect import unwrap
+from typing import Any, TypeVar, cast
 
 import click
+
+Decorated = TypeVar("Decorated", bound=Callable[..., Any])
+
+
+def option(*names: str, **settings: Any) -> Any:
+    """An option with these names and settings of click."""
+    return partial(click.option, *names, **settings)
+
+
+def argument(**settings: Any) -> Any:
+    """An argument with these settings of click."""
+    return partial(click.argument, **settings)
+
+
+def asking(function: Decorated) -> Decorated:
+    """A function that is called with the values that its parameters ask for."""
+    asked: dict[str, Any] = unwrap(function).__kwdefaults__
+    for name, make in reversed(asked.items()):
+        function = make(name)(function)
+    return function
+
+
+def gathered(kind: type[Any]) -> Any:
+    """All that the fields of a class ask for, of which a function gets an object."""
+    # Own options come before those that all recordings have.
+    order = sorted(fields(kind), key=lambda one: one.name not in kind.__annotations__)
+
+    def make(parameter: str) -> Callable[[Decorated], Decorated]:
+        def decorate(function: Decorated) -> Decorated:
+            @wraps(function)
+            def called(**values: Any) -> Any:
+                own = {one.name: values.pop(one.name) for one in order}
+                return function(**values, **{parameter: kind(**own)})
+
+            decorated = cast("Decorated", called)
+            for one in reversed(order):
+                decorated = one.default(one.name)(decorated)
+            return decorated
+
+        return decorate
+
+    return make
 
 
 class Verb(click.Command):
@@ -17,6 +67,11 @@ class Verb(click.Command):
             _refuse_one_dash(self, ctx, args)
             _refuse_repeated(self, ctx, args)
         return super().parse_args(ctx, args)
+
+
+def verb(function: Callable[..., Any]) -> click.Command:
+    """The command of a function whose parameters say what they ask for."""
+    return click.command(cls=Verb)(asking(function))
 
 
 class VerbGroup(click.Group):

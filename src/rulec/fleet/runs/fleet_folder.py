@@ -215,17 +215,14 @@ class FleetTally:
 
     def add(self, other: FleetTally) -> None:
         """Add the sums of other drives."""
-        self.drives.update(other.drives)
-        self.rules.update(other.rules)
-        self.reasons.update(other.reasons)
-        self.remarks.update(other.remarks)
+        for counts in ("drives", "rules", "reasons", "remarks", "faults"):
+            getattr(self, counts).update(getattr(other, counts))
         for why, where in other.examples.items():
             self.examples[why] = min(where, self.examples.get(why, where))
         self.unread += other.unread
         self.hours += other.hours
         self.km += other.km
         self.lost += other.lost
-        self.faults.update(other.faults)
 
     @property
     def judged(self) -> int:

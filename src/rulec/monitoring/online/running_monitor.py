@@ -36,6 +36,7 @@ from rulec.monitoring.online.running_constants import (
 from rulec.monitoring.online.snapshot import from_data, restored, to_data, with_source
 from rulec.monitoring.online.transition_cache import TransitionCache
 from rulec.monitoring.state_validation import check_objects, check_told
+from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.verdict import CarriedState, RuleFor, Violation
 from rulec.trace import State
 from rulec.trace.trace_messages import NOT_A_TRACE
@@ -84,9 +85,6 @@ class RunningMonitor:
         self._cut = cut
         machines: Mapping[str, OutcomeMachine] | None = None
         if self._told is not None or cut:
-            # Loads NumPy, 100 ms: only if something is unknown.
-            from rulec.monitoring.uncertainty.judged_rules import judged_rules
-
             judged = judged_rules(rulebook, self._told, cut=cut)
             if cut:
                 machines = {rule.name: machine.machine for rule, machine in judged.machines}

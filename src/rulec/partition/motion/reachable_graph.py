@@ -140,9 +140,17 @@ def _widened(boxes: Sequence[Box]) -> NDArray[np.float64]:
 
 
 def _alone(own: _Pair, start: int, count: int) -> _Nodes:
-    group = np.array([start])
-    pair = (sets.together(own[0], group, count), sets.together(own[1], group, count))
-    return pair, np.arange(count) == start
+    return _united(own, np.array([start]), count)
+
+
+def _united(pair: _Pair, cells: NDArray[np.intp], count: int) -> _Nodes:
+    """For each of ``count`` cells the hull of the sets in it."""
+    along, across = (sets.together(own, cells, count) for own in pair)
+    return (along, across), np.bincount(cells, minlength=count) > 0
+
+
+def _common(first: _Pair, second: _Pair) -> _Pair:
+    return sets.common(first[0], second[0]), sets.common(first[1], second[1])
 
 
 def _rows(pair: _Pair, chosen: NDArray[np.intp] | NDArray[np.bool_]) -> _Pair:
@@ -211,19 +219,12 @@ def _forward(course: _Course, first: _Nodes, within: Sequence[_Nodes] | None) ->
         stepped = _rows(_stepped(_rows(pair, cells), motion, times[p]), of_cell)
         reached = _clipped(stepped, areas[p + 1][targets], motion, times[p + 1])
         if within is not None:
-            limit = _rows(within[p + 1][0], targets)
-            reached = sets.common(reached[0], limit[0]), sets.common(reached[1], limit[1])
+            reached = _common(reached, _rows(within[p + 1][0], targets))
         some = _something(reached)
         taken = np.zeros(len(row.origins), dtype=bool)
         taken[chosen[some]] = True
         driven.append(taken)
-        reached, targets = _rows(reached, some), targets[some]
-        count = len(areas[p + 1])
-        united = (
-            sets.together(reached[0], targets, count),
-            sets.together(reached[1], targets, count),
-        )
-        nodes.append((united, np.bincount(targets, minlength=count) > 0))
+        nodes.append(_united(_rows(reached, some), targets[some], len(areas[p + 1])))
     return _Way(nodes, driven)
 
 
@@ -240,12 +241,7 @@ def _backward(
         cells = np.flatnonzero(goal)
         clipped = _clipped(_rows(pair, cells), _widened([within]), motion, times[-1])
         some = _something(clipped)
-        cells, clipped = cells[some], _rows(clipped, some)
-        united = (
-            sets.together(clipped[0], cells, len(goal)),
-            sets.together(clipped[1], cells, len(goal)),
-        )
-        pair, goal = united, np.bincount(cells, minlength=len(goal)) > 0
+        pair, goal = _united(_rows(clipped, some), cells[some], len(goal))
     result = [(pair, goal)]
     for p in reversed(range(len(edges))):
         row, (ahead, alive) = edges[p], result[-1]
@@ -254,14 +250,10 @@ def _backward(
         cells, of_cell = np.unique(targets, return_inverse=True)
         later = _rows(ahead, cells)
         earlier = motion.along.before(later[0], times[p]), motion.across.before(later[1], times[p])
-        own = _rows(forward.nodes[p][0], origins)
-        both = _rows(earlier, of_cell)
-        both = sets.common(both[0], own[0]), sets.common(both[1], own[1])
+        both = _common(_rows(earlier, of_cell), _rows(forward.nodes[p][0], origins))
         some = _something(both)
-        both, origins = _rows(both, some), origins[some]
         count = len(forward.nodes[p][1])
-        united = (sets.together(both[0], origins, count), sets.together(both[1], origins, count))
-        result.append((united, np.bincount(origins, minlength=count) > 0))
+        result.append(_united(_rows(both, some), origins[some], count))
     return result[::-1]
 
 

@@ -23,7 +23,7 @@ from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
 from rulec.monitoring.implied_values import with_implied_in_graph
 from rulec.monitoring.state_validation import check_objects, check_states
 from rulec.monitoring.uncertainty.known_words import run
-from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
+from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
 from rulec.monitoring.uncertainty.suppositions import (
     Suppositions,
@@ -35,7 +35,6 @@ from rulec.monitoring.verdict import NO_PAST, CarriedState, RuleNotJudged, Viola
 from rulec.planning.product.graph_instance import GraphInstance, Readings, SetMachine
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import State, Trace, TraceGraph
-from rulec.vocabulary import Vocabulary
 
 MOST_SETS = 1 << 10
 """The most sets of states distinguished; of further ones everything is assumed possible."""
@@ -119,10 +118,9 @@ class PossibleNodes:
         """
         if self.untold(rule, past):
             return []
-        graph, machine = self._graph, uncertain_machine(rule, None)
-        read = self._letters.bits_of(rule)
+        machine = uncertain_machine(rule, None)
         alike: dict[_Alike, list[Binding]] = {}
-        for binding in graph_bindings(rule, graph, self._vocabulary, read, past):
+        for binding in self._bindings(rule, past):
             about = (rule.name, tuple(binding.objects.values()))
             # What is settled is read, too, so that impossible nodes get noticed.
             words, is_exact = self._words(rule, machine, binding)
@@ -134,6 +132,20 @@ class PossibleNodes:
             key = _Alike(binding.first, start, words, is_exact)
             alike.setdefault(key, []).append(binding)
         return [self._instance(rule, machine, key, tuple(bound)) for key, bound in alike.items()]
+
+    def _bindings(self, rule: CompiledRule, past: CarriedState) -> Iterator[Binding]:
+        """A rule's bindings, with their layers.
+
+        Raises RulecError R0718 if there are too many, even of those that matter.
+        """
+        graph, nodes = self._graph, self._nodes
+        cast = Cast(graph.objects, self._vocabulary, len(graph.states), graph.present)
+        if not cast.has_many(types_of(rule)):
+            return cast.bindings(rule)
+        in_nodes = Cast(graph.objects, self._vocabulary, len(nodes.states), nodes.present)
+        read, idle = self._letters.bits_of(rule), uncertain_machine(rule, None).idle
+        bindings = doubtful_bindings(rule, in_nodes, read, idle, past.begun(rule.name))
+        return (binding_of(own.objects, graph.present, len(graph.states)) for own in bindings)
 
     def _words(
         self, rule: CompiledRule, machine: UncertainMachine, binding: Binding
@@ -232,28 +244,6 @@ def readings(
         surely.append(kept)
         perhaps.append(not_lost)
     return Readings(SetMachine(successors, surely), SetMachine(successors, perhaps), is_exact)
-
-
-def graph_bindings(
-    rule: CompiledRule,
-    graph: TraceGraph,
-    vocabulary: Vocabulary,
-    read: ReadBits,
-    past: CarriedState,
-) -> Iterator[Binding]:
-    """A rule's bindings, with their layers; ``read`` reads the states of ``NodesInTurn``.
-
-    Raises RulecError R0718 if there are too many, even of those that matter.
-    """
-    cast = Cast(graph.objects, vocabulary, len(graph.states), graph.present)
-    if not cast.has_many(types_of(rule)):
-        return cast.bindings(rule)
-    nodes = NodesInTurn(graph)
-    in_nodes = Cast(graph.objects, vocabulary, len(nodes.states), nodes.present)
-    bindings = doubtful_bindings(
-        rule, in_nodes, read, uncertain_machine(rule, None).idle, past.begun(rule.name)
-    )
-    return (binding_of(own.objects, graph.present, len(graph.states)) for own in bindings)
 
 
 Item = TypeVar("Item")

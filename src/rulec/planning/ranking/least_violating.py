@@ -50,142 +50,129 @@ class RankedManeuver:
     at_least: Mapping[PenaltyRank, Fraction] = field(default_factory=dict)
 
 
-def front(
-    transformers: NodeTransformers, ranks: PenaltyOrder, doubts: int = 0
-) -> Iterator[Penalty]:
-    """The Pareto front of the paths' penalties, in order, lazily.
+@dataclass(frozen=True, slots=True)
+class Ranking:
+    """What decides the ranks of paths: instances of rules, and the order of penalties.
 
     The last ``doubts`` instances are those of hard rules which, lost, are in doubt.
     """
-    penalties: list[Penalty] = []
-    passed: dict[Place, list[Penalty]] = {}
 
-    def worth(place: Place, penalty: Penalty) -> bool:
-        """Whether no other path here has a lower penalty."""
-        others = passed.setdefault(place, [])
-        if any(ranks.at_most(numbers, penalty) for numbers in (*penalties, *others)):
-            return False
-        others.append(penalty)
-        return True
+    transformers: NodeTransformers
+    order: PenaltyOrder
+    doubts: int = 0
 
-    for penalty in _ascending(transformers, ranks, worth, doubts):
-        penalties.append(penalty)
-        yield penalty
+    def front(self) -> Iterator[Penalty]:
+        """The Pareto front of the paths' penalties, in order, lazily."""
+        penalties: list[Penalty] = []
+        passed: dict[Place, list[Penalty]] = {}
 
+        def worth(place: Place, penalty: Penalty) -> bool:
+            """Whether no other path here has a lower penalty."""
+            others = passed.setdefault(place, [])
+            if any(self.order.at_most(numbers, penalty) for numbers in (*penalties, *others)):
+                return False
+            others.append(penalty)
+            return True
 
-def ranked(
-    transformers: NodeTransformers, ranks: PenaltyOrder, doubts: int = 0
-) -> Iterator[tuple[int, Penalty]]:
-    """Every penalty of some path, each after all that are lower.
-
-    With each comes its place: 1 in the front, else 1 more than the last place of lower penalties.
-    ``doubts`` as in ``front``.
-    """
-    passed: set[tuple[Place, Penalty]] = set()
-
-    def worth(place: Place, penalty: Penalty) -> bool:
-        new = (place, penalty) not in passed
-        passed.add((place, penalty))
-        return new
-
-    places: dict[Penalty, int] = {}
-    for penalty in _ascending(transformers, ranks, worth, doubts):
-        if penalty not in places:
-            lower = [place for other, place in places.items() if ranks.at_most(other, penalty)]
-            places[penalty] = 1 + max(lower, default=0)
-            yield places[penalty], penalty
-
-
-def with_penalty(
-    transformers: NodeTransformers, ranks: PenaltyOrder, penalty: Penalty, doubts: int = 0
-) -> graph_product.Product[Paying]:
-    """The product in which only the paths with one penalty are accepted.
-
-    ``doubts`` as in ``front``.
-    """
-    fee = _fees(transformers, ranks, doubts)
-
-    def enter(row: Sequence[Effect], memory: Paying) -> Paying | None:
-        joint, paid = memory
-        after, due = fee(row, joint)
-        total = ranks.total(paid, due)
-        return None if any(map(gt, total, penalty)) else (after, total)
-
-    product = graph_product.explore_with(
-        transformers, enter, (transformers.waiting, (0,) * len(ranks.ranks))
-    )
-    ends = frozenset([end for end in product.ends if end[1][1] == penalty])
-    return replace(product, ends=ends)
-
-
-def _ascending(
-    transformers: NodeTransformers,
-    ranks: PenaltyOrder,
-    worth: Callable[[Place, Penalty], bool],
-    doubts: int,
-) -> Iterator[Penalty]:
-    """Penalties of paths in order; only those that are ``worth`` it are extended.
-
-    Among partial paths with one penalty the longer ones come first, so goals are found soon. Raises
-    R0616 if too many are worth it.
-    """
-    remaining = graph_product.largest_product(transformers.graph)
-    fee = _fees(transformers, ranks, doubts)
-    of_layer: dict[
-        object, dict[tuple[int, graph_product.Joint], tuple[graph_product.Joint, Penalty]]
-    ] = {}
-    fees = [of_layer.setdefault(Interned(rows), {}) for rows in transformers.nodes]
-    queue: list[tuple[Penalty, int, int, int, graph_product.Joint]] = []
-    numbers = count()
-
-    def reach(layer: int, node: int, joint: graph_product.Joint, paid: Penalty) -> None:
-        if (node, joint) not in fees[layer]:
-            fees[layer][node, joint] = fee(transformers.nodes[layer][node], joint)
-        after, due = fees[layer][node, joint]
-        total = ranks.total(paid, due)
-        heappush(queue, (total, -layer, next(numbers), node, after))
-
-    if transformers.starts:
-        reach(0, transformers.graph.start, transformers.waiting, (0,) * len(ranks.ranks))
-    while queue:
-        penalty, earlier, _, node, joint = heappop(queue)
-        if not worth((-earlier, node, joint), penalty):
-            continue
-        remaining -= 1
-        if remaining < 0:
-            raise graph_product.too_large(transformers.graph)
-        if -earlier == len(transformers.steps):
+        for penalty in self._ascending(worth):
+            penalties.append(penalty)
             yield penalty
-            continue
-        for target, _ in transformers.steps[-earlier][node]:
-            reach(1 - earlier, target, joint, penalty)
 
+    def ranked(self) -> Iterator[tuple[int, Penalty]]:
+        """Every penalty of some path, each after all that are lower.
 
-def _fees(
-    transformers: NodeTransformers, ranks: PenaltyOrder, doubts: int
-) -> Callable[[Sequence[Effect], graph_product.Joint], tuple[graph_product.Joint, Penalty]]:
-    """A function that gives the next states of the monitors at a node, and the penalty added."""
-    surely = len(transformers.instances) - doubts
-    prices = [
-        (ranks.of(instance.rule), ranks.weight(instance.rule) * len(instance.bindings))
-        for instance in transformers.instances[:surely]
-    ]
-    in_doubt = ranks.doubt
+        With each comes its place: 1 in the front, else 1 more than the last place of lower
+        penalties.
+        """
+        passed: set[tuple[Place, Penalty]] = set()
 
-    def fee(
-        row: Sequence[Effect], joint: graph_product.Joint
-    ) -> tuple[graph_product.Joint, Penalty]:
-        after = tuple(map(getitem, row, joint))
-        if LOST not in after:
-            return after, ()
-        due = [0] * len(ranks.ranks)
-        for state, (rank, price) in zip(after[:surely], prices, strict=True):
-            if state == LOST:
-                due[rank] += price
-        if in_doubt is not None and LOST in after[surely:]:
-            due[in_doubt] = 1
-            # Nothing more comes of what else is in doubt
-            after = (*after[:surely], *(SAFE,) * doubts)
-        return tuple([SAFE if state == LOST else state for state in after]), tuple(due)
+        def worth(place: Place, penalty: Penalty) -> bool:
+            new = (place, penalty) not in passed
+            passed.add((place, penalty))
+            return new
 
-    return fee
+        places: dict[Penalty, int] = {}
+        for penalty in self._ascending(worth):
+            if penalty not in places:
+                at_most = self.order.at_most
+                lower = [place for other, place in places.items() if at_most(other, penalty)]
+                places[penalty] = 1 + max(lower, default=0)
+                yield places[penalty], penalty
+
+    def with_penalty(self, penalty: Penalty) -> graph_product.Product[Paying]:
+        """The product in which only the paths with one penalty are accepted."""
+        fee, order = self._fees(), self.order
+
+        def enter(row: Sequence[Effect], memory: Paying) -> Paying | None:
+            joint, paid = memory
+            after, due = fee(row, joint)
+            total = order.total(paid, due)
+            return None if any(map(gt, total, penalty)) else (after, total)
+
+        product = graph_product.explore_with(
+            self.transformers, enter, (self.transformers.waiting, (0,) * len(order.ranks))
+        )
+        ends = frozenset([end for end in product.ends if end[1][1] == penalty])
+        return replace(product, ends=ends)
+
+    def _ascending(self, worth: Callable[[Place, Penalty], bool]) -> Iterator[Penalty]:
+        """Penalties of paths in order; only those that are ``worth`` it are extended.
+
+        Among partial paths with one penalty the longer ones come first, so goals are found soon.
+        Raises R0616 if too many are worth it.
+        """
+        transformers, order = self.transformers, self.order
+        remaining = graph_product.largest_product(transformers.graph)
+        fee = self._fees()
+        of_layer: dict[object, dict[tuple[int, graph_product.Joint], Paying]] = {}
+        fees = [of_layer.setdefault(Interned(rows), {}) for rows in transformers.nodes]
+        queue: list[tuple[Penalty, int, int, int, graph_product.Joint]] = []
+        numbers = count()
+
+        def reach(layer: int, node: int, joint: graph_product.Joint, paid: Penalty) -> None:
+            if (node, joint) not in fees[layer]:
+                fees[layer][node, joint] = fee(transformers.nodes[layer][node], joint)
+            after, due = fees[layer][node, joint]
+            total = order.total(paid, due)
+            heappush(queue, (total, -layer, next(numbers), node, after))
+
+        if transformers.starts:
+            reach(0, transformers.graph.start, transformers.waiting, (0,) * len(order.ranks))
+        while queue:
+            penalty, earlier, _, node, joint = heappop(queue)
+            if not worth((-earlier, node, joint), penalty):
+                continue
+            remaining -= 1
+            if remaining < 0:
+                raise graph_product.too_large(transformers.graph)
+            if -earlier == len(transformers.steps):
+                yield penalty
+                continue
+            for target, _ in transformers.steps[-earlier][node]:
+                reach(1 - earlier, target, joint, penalty)
+
+    def _fees(self) -> Callable[[Sequence[Effect], graph_product.Joint], Paying]:
+        """Gives the next states of the monitors at a node, and the penalty added."""
+        order, doubts, instances = self.order, self.doubts, self.transformers.instances
+        surely = len(instances) - doubts
+        prices = [
+            (order.of(instance.rule), order.weight(instance.rule) * len(instance.bindings))
+            for instance in instances[:surely]
+        ]
+        in_doubt = order.doubt
+
+        def fee(row: Sequence[Effect], joint: graph_product.Joint) -> Paying:
+            after = tuple(map(getitem, row, joint))
+            if LOST not in after:
+                return after, ()
+            due = [0] * len(order.ranks)
+            for state, (rank, price) in zip(after[:surely], prices, strict=True):
+                if state == LOST:
+                    due[rank] += price
+            if in_doubt is not None and LOST in after[surely:]:
+                due[in_doubt] = 1
+                # Nothing more comes of what else is in doubt
+                after = (*after[:surely], *(SAFE,) * doubts)
+            return tuple([SAFE if state == LOST else state for state in after]), tuple(due)
+
+        return fee

@@ -53,8 +53,8 @@ def proven(
     looked_at: set[tuple[int, ...]] = set()
     unproved: list[Maneuver] = []
     promised: dict[tuple[int, ...], float] = {}
-    ways = guided_ways(product, graph, search.bounds, MOST_BOUNDS + MORE_BOUNDS * n)
-    for way in islice(ways, MOST_TRIED * n):
+    ways = GuidedSearch(product, graph, search.bounds)
+    for way in islice(ways.guided(MOST_BOUNDS + MORE_BOUNDS * n), MOST_TRIED * n):
         if len(maneuvers) >= n and way.promises >= maneuvers[n - 1].cost:
             break
         looked_at.add(way.maneuver.nodes)
@@ -65,9 +65,9 @@ def proven(
         else:
             unproved.append(way.maneuver)
     if len(maneuvers) < n:
-        beam = beam_ways(product, graph, search.bounds, max(BEAM, n))
+        beam = (way.maneuver for way in ways.beam(max(BEAM, n)))
         by_cells = islice(cheapest(product), MOST_TRIED * n)
-        for candidates in ((way.maneuver for way in beam), by_cells):
+        for candidates in (beam, by_cells):
             for candidate in candidates if len(maneuvers) < n else ():
                 if candidate.nodes not in looked_at:
                     looked_at.add(candidate.nodes)
@@ -136,8 +136,7 @@ def least_promised(
     product: Product[Memory], graph: NavigationGraph, bounds: WayBounds
 ) -> float | None:
     """The least driving cost of all accepted paths; None if that takes too long to find."""
-    ways = guided_ways(product, graph, bounds, MOST_BOUNDS, driving_only=True)
-    first = next(ways, None)
+    first = next(GuidedSearch(product, graph, bounds, driving_only=True).guided(MOST_BOUNDS), None)
     return None if first is None else max(first.promises - ALIKE, 0.0)
 
 
@@ -178,95 +177,106 @@ class _Part(Generic[Memory]):
         return None if bound is None else replace(self, bound=bound, is_known=True)
 
 
-def guided_ways(
-    product: Product[Memory],
-    graph: NavigationGraph,
-    bounds: WayBounds,
-    most: int,
-    *,
-    driving_only: bool = False,
-) -> Iterator[GuidedWay]:
-    """Paths by ascending bound, up to ``ALIKE``; at most ``most`` linear programs are solved.
+class GuidedSearch(Generic[Memory]):
+    """A search for a product's paths by the lower bounds of their costs.
 
     Paths whose bound shows that they cannot be driven are left out. With ``driving_only`` changes
     of cell cost nothing.
     """
-    to_come = _changes_to_come(product, graph, free=driving_only)
-    queue: list[tuple[int, int, float, int, _Part[Memory]]] = []
-    numbers = count()
 
-    def put(part: _Part[Memory]) -> None:
-        promises = part.promises(to_come)
-        layers = -len(part.path)
-        heappush(queue, (int(promises / ALIKE), layers, promises, next(numbers), part))
+    def __init__(
+        self,
+        product: Product[Memory],
+        graph: NavigationGraph,
+        bounds: WayBounds,
+        *,
+        driving_only: bool = False,
+    ) -> None:
+        self._product, self._graph, self._bounds = product, graph, bounds
+        self._is_free = driving_only
+        self._to_come = self._changes_to_come()
+        starts = [start for start in product.counts[0] if start in self._to_come[0]]
+        self._starts = [_Part((one[0],), one, 0.0, None, is_known=True) for one in starts]
 
-    for start in product.counts[0]:
-        if start in to_come[0]:
-            put(_first(start))
-    while queue:
-        *_, part = heappop(queue)
-        layer = len(part.path) - 1
-        if not part.is_known:
-            if not most:
-                return
-            most -= 1
-            known = part.bounded(bounds)
-            if known is not None:
-                put(known)
-        elif layer == len(graph.layers) - 1:
-            found = maneuver(product.graph, part.path, 0)
-            yield GuidedWay(found, part.promises(to_come))
-        else:
-            for longer in _onward(part, product, graph, to_come, free=driving_only):
-                put(longer)
+    def guided(self, most: int) -> Iterator[GuidedWay]:
+        """Paths by ascending bound, up to ``ALIKE``, with at most ``most`` linear programs."""
+        queue: list[tuple[int, int, float, int, _Part[Memory]]] = []
+        numbers = count()
 
+        def put(part: _Part[Memory]) -> None:
+            promises = part.promises(self._to_come)
+            layers = -len(part.path)
+            heappush(queue, (int(promises / ALIKE), layers, promises, next(numbers), part))
 
-def beam_ways(
-    product: Product[Memory], graph: NavigationGraph, bounds: WayBounds, width: int
-) -> Iterator[GuidedWay]:
-    """Paths found by extending, in every layer, only the ``width`` beginnings of lowest bound.
-
-    Source: Lowerre, "The HARPY speech recognition system" (1976).
-    """
-    to_come = _changes_to_come(product, graph, free=False)
-    numbers = count()
-    beam = [_first(start) for start in product.counts[0] if start in to_come[0]]
-    for _ in product.steps:
-        longer = [
-            longer_part for part in beam for longer_part in _onward(part, product, graph, to_come)
-        ]
-        queue = [(part.promises(to_come), next(numbers), part) for part in longer]
-        heapify(queue)
-        beam = []
-        while queue and len(beam) < width:
+        for start in self._starts:
+            put(start)
+        while queue:
             *_, part = heappop(queue)
-            if part.is_known:
-                beam.append(part)
-            elif (known := part.bounded(bounds)) is not None:
-                heappush(queue, (known.promises(to_come), next(numbers), known))
-    for part in beam:
-        yield GuidedWay(maneuver(product.graph, part.path, 0), part.promises(to_come))
+            if not part.is_known:
+                if not most:
+                    return
+                most -= 1
+                known = part.bounded(self._bounds)
+                if known is not None:
+                    put(known)
+            elif len(part.path) == len(self._graph.layers):
+                yield self._way(part)
+            else:
+                for longer in self._onward(part):
+                    put(longer)
 
+    def beam(self, width: int) -> Iterator[GuidedWay]:
+        """Paths found by extending, in every layer, only the ``width`` beginnings of lowest bound.
 
-def _first(start: ProductNode[Memory]) -> _Part[Memory]:
-    return _Part((start[0],), start, 0.0, None, is_known=True)
+        Source: Lowerre, "The HARPY speech recognition system" (1976).
+        """
+        numbers = count()
+        beam = self._starts
+        for _ in self._product.steps:
+            longer = [longer_part for part in beam for longer_part in self._onward(part)]
+            queue = [(part.promises(self._to_come), next(numbers), part) for part in longer]
+            heapify(queue)
+            beam = []
+            while queue and len(beam) < width:
+                *_, part = heappop(queue)
+                if part.is_known:
+                    beam.append(part)
+                elif (known := part.bounded(self._bounds)) is not None:
+                    heappush(queue, (known.promises(self._to_come), next(numbers), known))
+        yield from map(self._way, beam)
 
+    def _way(self, part: _Part[Memory]) -> GuidedWay:
+        found = maneuver(self._product.graph, part.path, 0)
+        return GuidedWay(found, part.promises(self._to_come))
 
-def _onward(
-    part: _Part[Memory],
-    product: Product[Memory],
-    graph: NavigationGraph,
-    to_come: _Costs[Memory],
-    *,
-    free: bool = False,
-) -> Iterator[_Part[Memory]]:
-    """The parts that are one cell longer; if ``free``, changes of cell cost nothing."""
-    layer = len(part.path) - 1
-    for step, _ in product.steps[layer][part.node]:
-        if step in to_come[layer + 1]:
-            cost = 0.0 if free else change_cost(graph, layer, part.node[0], step[0])
-            path = (*part.path, step[0])
-            yield _Part(path, step, part.changes + cost, part.bound, is_known=False)
+    def _onward(self, part: _Part[Memory]) -> Iterator[_Part[Memory]]:
+        """The parts that are one cell longer."""
+        layer = len(part.path) - 1
+        for step, _ in self._product.steps[layer][part.node]:
+            if step in self._to_come[layer + 1]:
+                cost = self._change(layer, part.node[0], step[0])
+                path = (*part.path, step[0])
+                yield _Part(path, step, part.changes + cost, part.bound, is_known=False)
+
+    def _change(self, p: int, node: int, target: int) -> float:
+        return 0.0 if self._is_free else change_cost(self._graph, p, node, target)
+
+    def _changes_to_come(self) -> _Costs[Memory]:
+        """The least cost of changes of cell from each product node to a goal, by layer."""
+        costs: _Costs[Memory] = [dict.fromkeys(self._product.ends, 0.0)]
+        for p in reversed(range(len(self._product.steps))):
+            later = costs[-1]
+            here: dict[ProductNode[Memory], float] = {}
+            known: dict[tuple[int, int], float] = {}
+            for node, onward in self._product.steps[p].items():
+                for step, _ in onward:
+                    if step in later:
+                        edge = node[0], step[0]
+                        if edge not in known:
+                            known[edge] = self._change(p, *edge)
+                        here[node] = min(here.get(node, inf), known[edge] + later[step])
+            costs.append(here)
+        return costs[::-1]
 
 
 def change_cost(graph: NavigationGraph, p: int, node: int, target: int) -> float:
@@ -275,23 +285,3 @@ def change_cost(graph: NavigationGraph, p: int, node: int, target: int) -> float
     if margin is None or graph.costs_nothing(p, node, target):
         return 0.0
     return 1 / (margin * graph.step_s)
-
-
-def _changes_to_come(
-    product: Product[Memory], graph: NavigationGraph, *, free: bool
-) -> _Costs[Memory]:
-    """The least cost of changes of cell from each product node to a goal, by layer."""
-    costs: _Costs[Memory] = [dict.fromkeys(product.ends, 0.0)]
-    for p in reversed(range(len(product.steps))):
-        later = costs[-1]
-        here: dict[ProductNode[Memory], float] = {}
-        known: dict[tuple[int, int], float] = {}
-        for node, onward in product.steps[p].items():
-            for step, _ in onward:
-                if step in later:
-                    edge = node[0], step[0]
-                    if edge not in known:
-                        known[edge] = 0.0 if free else change_cost(graph, p, *edge)
-                    here[node] = min(here.get(node, float("inf")), known[edge] + later[step])
-        costs.append(here)
-    return costs[::-1]

@@ -124,10 +124,15 @@ class Complaints:
     Repetitions of the same text are only counted, too, such as an error in each drive of a file.
     """
 
-    def __init__(self, most: int = 10) -> None:
+    def __init__(self, errors: Iterable[RulecError] = (), most: int = 10) -> None:
         self._most = most
         self._seen: Counter[str] = Counter()
         self._shown: dict[str, list[Diagnostic]] = {}
+        for error in errors:
+            self.add(error)
+
+    def __bool__(self) -> bool:
+        return bool(self._seen)
 
     def add(self, error: RulecError) -> None:
         """Show an error, or only count it if many of its kind were shown."""

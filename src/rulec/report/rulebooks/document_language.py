@@ -12,7 +12,7 @@ from rulec.diagnostics import Source
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.french import FRENCH
 from rulec.logic.sentences.german import GERMAN
-from rulec.logic.sentences.language import Language, LanguageCode
+from rulec.logic.sentences.language import Language, LanguageCode, TypeWords
 from rulec.logic.sentences.wording import spoken
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.rulebook_model import Rulebook
@@ -56,7 +56,8 @@ def document_language(rulebook: Rulebook, code: LanguageCode) -> DocumentLanguag
     titles = titles_in(code)
     if code == "en":
         return replace(IN_ENGLISH, titles=titles)
-    language = replace(GERMAN if code == "de" else FRENCH, types=types_of(rulebook, code))
+    types = {name: TypeWords(*words) for name, words in types_of(rulebook, code).items()}
+    language = replace(GERMAN if code == "de" else FRENCH, types=types)
     return DocumentLanguage(language, _texts(code), titles, topics_in(code))
 
 

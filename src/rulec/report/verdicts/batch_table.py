@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -66,11 +66,15 @@ class BatchTally:
             rules = set(rules) - is_open - {rule.rule for rule in verdict.not_judged}
         self.judged_in.update(rules)
 
-    def include(self, other: BatchTally) -> None:
-        """Add another tally by the same rulebook; ``first`` and ``recordings`` stay as they are."""
-        self.not_judged += other.not_judged
-        for counts in ("outcomes", "drives", "open_in", "judged_in"):
-            getattr(self, counts).update(getattr(other, counts))
+    @staticmethod
+    def sum_of(tallies: Iterable[BatchTally]) -> BatchTally:
+        """The sum of tallies by the same rulebook, without ``first`` and ``recordings``."""
+        total = BatchTally()
+        for tally in tallies:
+            total.not_judged += tally.not_judged
+            for counts in ("outcomes", "drives", "open_in", "judged_in"):
+                getattr(total, counts).update(getattr(tally, counts))
+        return total
 
     @property
     def with_verdict(self) -> set[str]:

@@ -112,10 +112,9 @@ def _named(reference: str, search_path: Sequence[Path]) -> Path | None:
 def formatted(name: str, path: Path | None, data: bytes) -> Formatted:
     """Format one file. Raises RulecError, or FormattingError for a bug in rulec."""
     # The parser, 75 ms: not where all is known to be in form.
-    from rulec.syntax import decode
-    from rulec.syntax.formatting import format_source
+    from rulec.syntax.formatting import format_bytes
 
-    return Formatted(name, path, data, format_source(decode(name, data)).encode())
+    return Formatted(name, path, data, format_bytes(name, data))
 
 
 def replace_files(files: Sequence[Formatted]) -> tuple[Diagnostic, ...]:

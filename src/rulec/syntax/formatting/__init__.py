@@ -8,6 +8,6 @@
 The result is returned only after ``safety`` has compared it with the original.
 """
 
-from rulec.syntax.formatting.safe_format import FormattingError, format_source
+from rulec.syntax.formatting.safe_format import FormattingError, format_bytes, format_source
 
-__all__ = ["FormattingError", "format_source"]
+__all__ = ["FormattingError", "format_bytes", "format_source"]

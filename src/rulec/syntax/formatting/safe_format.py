@@ -8,7 +8,7 @@ from rulec.diagnostics import RulecError, Source
 from rulec.syntax.formatting.comments import comments_of
 from rulec.syntax.formatting.file_layout import arranged
 from rulec.syntax.parser import parse
-from rulec.syntax.scanner import scan
+from rulec.syntax.scanner import decode, scan
 
 
 class FormattingError(Exception):
@@ -42,6 +42,11 @@ def format_source(source: Source) -> str:
     if arranged(made) != text:
         raise FormattingError(f"formatting {source.name} twice is not the same as once")
     return text
+
+
+def format_bytes(name: str, data: bytes) -> bytes:
+    """The same for a file's content. Raises RulecError as ``decode`` does, too."""
+    return format_source(decode(name, data)).encode()
 
 
 def _signs(source: Source) -> str:

@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import PurePath
+from types import ModuleType
 from typing import IO, TYPE_CHECKING, Any, cast
 
 import msgspec
@@ -143,10 +144,14 @@ def _objects_in(line: bytes, most: int) -> int:
 def _alike(lines: Sequence[bytes], together: bool) -> Sequence[AlikeLines]:
     if not together:
         return []
-    # Loads numpy, 60 ms, which a running trace does not need.
-    from rulec.trace.formats.alike_lines import alike_lines
+    return list(_columns().alike_lines(lines, _heading))
 
-    return list(alike_lines(lines, _heading))
+
+def _columns() -> ModuleType:
+    """What reads lines as columns: it loads NumPy, 60 ms, which a running trace does not need."""
+    from rulec.trace.formats import alike_lines
+
+    return alike_lines
 
 
 def _block(
@@ -157,9 +162,6 @@ def _block(
     before: SourceLocation,
 ) -> LineBlock:
     """The items of the lines after ``before``; ``places`` maps a line's index to its item's."""
-    # Loads numpy, see above.
-    from rulec.trace.formats.alike_lines import LineBlock, placed_among
-
     line_at = {place: index for index, place in places.items()}
     first = (before.line or 0) + 1
 
@@ -167,9 +169,10 @@ def _block(
         index = line_at[place]
         return _trace(lines[index], replace(before, line=first + index), _StateReader())
 
-    return LineBlock(
-        items, decode, [placed_among(places, alike_lines, first) for alike_lines in alike]
-    )
+    columns = _columns()
+    own = [columns.placed_among(places, alike_lines, first) for alike_lines in alike]
+    block: LineBlock = columns.LineBlock(items, decode, own)
+    return block
 
 
 def _heading(line: bytes) -> tuple[str, float, Mapping[str, str], Ending] | None:

@@ -14,7 +14,7 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.recording_options import RecordingOptions, as_typed, recording_options
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.options.standard_input import read_as_file
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import option, verb
 from rulec.cli.output import errors_told, open_session, put_answer, sources_of_rulebooks, width_of
 
 _FOUND_WITH = {
@@ -26,62 +26,53 @@ _FOUND_WITH = {
 """The kinds of findings that are found only with an option."""
 
 
-@click.command(cls=Verb)
-@shared.rulebooks_argument()
-@output_options(endings_of("text", "markdown", "json"), "the audit")
-@click.option(
-    "--fail-on",
-    "fatal",
-    type=click.Choice([*KINDS, "any"]),
-    multiple=True,
-    metavar="KIND",
-    help="A kind of finding that makes the exit status 1; may be given several times; `any` means "
-    "every kind. With --compare only new findings count.",
-)
-@click.option(
-    "--examples", "run", is_flag=True, help="Also run the examples and name those that fail."
-)
-@click.option("--all", "every", is_flag=True, help="Show every finding's note, and all articles.")
-@click.option(
-    "--compare",
-    metavar="OLD",
-    callback=read_as_file,
-    shell_complete=complete_rulebooks,
-    help="List what has changed since an older audit (.json), or compared to another rulebook.",
-)
-@click.option(
-    "--source",
-    metavar="FILE|FORMAT",
-    help="List which rules can be judged from a recording, or from files of a format (one of "
-    "`rulec list formats`), and which words the other rules lack.",
-)
-@click.option(
-    "--law",
-    type=click.Path(dir_okay=False),
-    callback=read_as_file,
-    help="Look up what the rules of one RULEBOOK cite in this text of the law (Markdown or plain).",
-)
-@click.option(
-    "--law-now",
-    type=click.Path(dir_okay=False),
-    callback=read_as_file,
-    help="With --law: the newer text; name the rules that rest on provisions changed in it.",
-)
-@recording_options
-@shared.at_option
+@verb
 def command(
-    rulebooks: tuple[str, ...],
     *,
-    to: Output,
-    fatal: tuple[str, ...],
-    run: bool,
-    every: bool,
-    compare: str | None,
-    source: str | None,
-    law: str | None,
-    law_now: str | None,
-    recorded: RecordingOptions,
-    at: str,
+    rulebooks: tuple[str, ...] = shared.rulebooks_argument(),
+    to: Output = output_options(endings_of("text", "markdown", "json"), "the audit"),
+    fatal: tuple[str, ...] = option(
+        "--fail-on",
+        type=click.Choice([*KINDS, "any"]),
+        multiple=True,
+        metavar="KIND",
+        help="A kind of finding that makes the exit status 1; may be given several times; `any` "
+        "means every kind. With --compare only new findings count.",
+    ),
+    run: bool = option(
+        "--examples", is_flag=True, help="Also run the examples and name those that fail."
+    ),
+    every: bool = option(
+        "--all", is_flag=True, help="Show every finding's note, and all articles."
+    ),
+    compare: str | None = option(
+        "--compare",
+        metavar="OLD",
+        callback=read_as_file,
+        shell_complete=complete_rulebooks,
+        help="List what has changed since an older audit (.json), or compared to another rulebook.",
+    ),
+    source: str | None = option(
+        "--source",
+        metavar="FILE|FORMAT",
+        help="List which rules can be judged from a recording, or from files of a format (one of "
+        "`rulec list formats`), and which words the other rules lack.",
+    ),
+    law: str | None = option(
+        "--law",
+        type=click.Path(dir_okay=False),
+        callback=read_as_file,
+        help="Look up what the rules of one RULEBOOK cite in this text of the law (Markdown or "
+        "plain).",
+    ),
+    law_now: str | None = option(
+        "--law-now",
+        type=click.Path(dir_okay=False),
+        callback=read_as_file,
+        help="With --law: the newer text; name the rules that rest on provisions changed in it.",
+    ),
+    recorded: RecordingOptions = recording_options,
+    at: str = shared.at_option,
 ) -> int:
     """Report what each RULEBOOK (a name, or the path of a source) is based on.
 
@@ -97,9 +88,9 @@ def command(
         raise click.UsageError("--law is the law of one rulebook; audit the others by themselves")
     # Nothing would ever be found, and the audit always succeed.
     given = {"--examples": run, "--law": law is not None, "--law-now": law_now is not None}
-    for kind, option in _FOUND_WITH.items():
-        if kind in fatal and not given[option]:
-            raise click.UsageError(f"--fail-on {kind} needs {option}: without, none is found")
+    for kind, named in _FOUND_WITH.items():
+        if kind in fatal and not given[named]:
+            raise click.UsageError(f"--fail-on {kind} needs {named}: without, none is found")
     if source is None and any(as_typed(recorded)):
         raise click.UsageError(
             "--map, --scenario and --input-format are about a recording: name it by --source"

@@ -5,10 +5,9 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from typing import NamedTuple
 
 import click
 
@@ -18,7 +17,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shared_options import refuse_unmatched, rules_on_topic
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import gathered, option, verb
 from rulec.cli.output import (
     answer_lines,
     books_and_rule,
@@ -38,63 +37,65 @@ from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
 
 
-@click.command(cls=Verb)
-@shared.rulebooks_argument("RULEBOOK... [RULE]", required=False)
-@click.option(
-    "--all",
-    "every",
-    is_flag=True,
-    help="Compare every pair of the named rulebooks, or of all available ones.",
-)
-@shared.rules_option("Compare only rules that match PATTERN")
-@shared.topic_option("Show what any number of RULEBOOKs say on a topic")
-@click.option(
-    "-v", "--verbose", is_flag=True, help="Show traces of every rule, and all sentences of a topic."
-)
-@click.option(
-    "--pair",
-    "paired",
-    multiple=True,
-    metavar="A=B",
-    help="Compare rule A of the first with rule B of the second. May be given several times.",
-)
-@shared.step_option(
-    "The time step, in s, on which rules with bounds in seconds are compared.  [default: one "
-    "that divides the steps of their examples]",
-)
-@shared.number_option(
-    "--witnesses",
-    "n_witnesses",
-    "Show up to N traces for every difference, each for a different reason.",
-    least=1,
-    most=100,
-    default=3,
-)
-@output_options(
-    endings_of("text", "markdown", "json", "html", "csv"),
-    "the comparison: text, Markdown, JSON, an HTML page, or CSV with a row per rule",
-)
-@click.option(
-    "--witness",
-    type=click.Path(dir_okay=False, allow_dash=True),
-    metavar="FILE",
-    help="Write the traces that one rulebook forbids and the other allows to FILE, as JSON Lines.",
-)
-@shared.no_cache_option
-@shared.at_option
+@dataclass(frozen=True, kw_only=True)
+class DiffOptions:
+    """How rulebooks are compared, and what is said of them."""
+
+    every: bool = option(
+        "--all",
+        is_flag=True,
+        help="Compare every pair of the named rulebooks, or of all available ones.",
+    )
+    patterns: tuple[str, ...] = shared.rules_option("Compare only rules that match PATTERN")
+    topic: str | None = shared.topic_option("Show what any number of RULEBOOKs say on a topic")
+    verbose: bool = option(
+        "-v",
+        "--verbose",
+        is_flag=True,
+        help="Show traces of every rule, and all sentences of a topic.",
+    )
+    paired: tuple[str, ...] = option(
+        "--pair",
+        multiple=True,
+        metavar="A=B",
+        help="Compare rule A of the first with rule B of the second. May be given several times.",
+    )
+    step_s: Fraction | None = shared.step_option(
+        "The time step, in s, on which rules with bounds in seconds are compared.  [default: one "
+        "that divides the steps of their examples]",
+    )
+    n_witnesses: int = shared.number_option(
+        "--witnesses",
+        "Show up to N traces for every difference, each for a different reason.",
+        least=1,
+        most=100,
+        default=3,
+    )
+    to: Output = output_options(
+        endings_of("text", "markdown", "json", "html", "csv"),
+        "the comparison: text, Markdown, JSON, an HTML page, or CSV with a row per rule",
+    )
+    witness: str | None = option(
+        "--witness",
+        type=click.Path(dir_okay=False, allow_dash=True),
+        metavar="FILE",
+        help="Write the traces that one rulebook forbids and the other allows to FILE, as JSON "
+        "Lines.",
+    )
+    at: str = shared.no_cache_and(shared.at_option)
+
+    def question(self, kind: str, rulebooks: Sequence[str]) -> AnswerQuestion:
+        """The question of this kind, whose answer is the same wherever it is written."""
+        same = replace(self, to=Output("", self.to.form), witness=None)
+        shown = repr((same, width_of(self.to), wants_color(sys.stdout)))
+        return AnswerQuestion(("diff", kind, shown, *rulebooks), search_path())
+
+
+@verb
 def command(
-    rulebooks: tuple[str, ...],
     *,
-    every: bool,
-    patterns: tuple[str, ...],
-    topic: str | None,
-    verbose: bool,
-    paired: tuple[str, ...],
-    step_s: Fraction | None,
-    n_witnesses: int,
-    to: Output,
-    witness: str | None,
-    at: str,
+    rulebooks: tuple[str, ...] = shared.rulebooks_argument("RULEBOOK... [RULE]", required=False),
+    asked: DiffOptions = gathered(DiffOptions),
 ) -> int:
     """Compare two RULEBOOKs: which rules of the first are stricter or laxer than the second's.
 
@@ -106,29 +107,27 @@ def command(
     Exit status: 0 no difference, 1 differences found, 2 a question could not be answered; with
     --topic 0.
     """
-    if len(rulebooks) > 2 and not every and topic is None:
+    to, witness = asked.to, asked.witness
+    if len(rulebooks) > 2 and not asked.every and asked.topic is None:
         rulebooks, rule = books_and_rule(rulebooks, "diff")
-        patterns = patterns if rule is None else (*patterns, rule)
+        asked = asked if rule is None else replace(asked, patterns=(*asked.patterns, rule))
     rulebooks = sources_of_rulebooks(rulebooks, "cannot be compared")
-    if topic is not None:
-        if every or paired or patterns or witness is not None or len(rulebooks) < 2:
+    chosen = bool(asked.patterns or asked.paired)
+    if asked.topic is not None:
+        if asked.every or chosen or witness is not None or len(rulebooks) < 2:
             raise click.UsageError(
                 "--topic lays the words of two or more rulebooks side by side, without --rule, "
                 "--pair, --all and --witness"
             )
-        width = width_of(to)
-        asked = ("diff", "on", topic, at, str((to.form, width, verbose)), *rulebooks)
-        question = AnswerQuestion(asked, search_path())
-        on_topic = partial(_on_topic, rulebooks, (topic, at), to, in_full=verbose)
-        put_answer(question.answer(on_topic), to)
+        on_topic = partial(_on_topic, rulebooks, asked.topic, asked)
+        put_answer(asked.question("on", rulebooks).answer(on_topic), to)
         return ExitStatus.OK
-    if every:
-        if paired:
+    if asked.every:
+        if asked.paired:
             raise click.UsageError("--pair is for two rulebooks, not for --all")
         if witness is not None:
             raise click.UsageError("--witness is for two rulebooks, not for --all")
-        pairs = AllPairs(tuple(patterns), step_s, at, to.form, width_of(to))
-        return _compared(rulebooks, pairs, to)
+        return _compared(rulebooks, asked)
     if len(rulebooks) != 2:
         books = " ".join(rulebooks)
         raise click.UsageError(
@@ -137,17 +136,14 @@ def command(
             if len(rulebooks) > 2
             else f"with which rulebook is it to be compared? As in `rulec diff {books or 'de'} nl`"
         )
-    two = TwoBooks(patterns, paired, step_s, n_witnesses)
-    in_full = verbose or bool(patterns or paired)
-    shown = (to.form, width_of(to), in_full, wants_color(sys.stdout))
-    question_words = ("diff", at, *map(str, (*two, *shown)), *rulebooks)
-    question = AnswerQuestion(question_words, search_path())
+    question = asked.question("two", rulebooks)
     known = question.recall() if witness is None else None
     if known is None:
         warned: list[Diagnostic] = []
-        difference = _difference(rulebooks, two, at, warned)
+        difference = _difference(rulebooks, asked, warned)
         if witness is not None:
             _write_witnesses(difference, witness)
+        in_full = asked.verbose or chosen
         text = lazy.diff_formats.render(difference, to.form, width_of(to), in_full=in_full)
         known = text, difference.is_complete, difference.is_none
         if difference.is_complete and not warned:
@@ -158,10 +154,7 @@ def command(
 
 
 def _difference(
-    rulebooks: Sequence[str],
-    question: TwoBooks,
-    at: str,
-    warned: list[Diagnostic],
+    rulebooks: Sequence[str], asked: DiffOptions, warned: list[Diagnostic]
 ) -> lazy.RulebookDiff:
     """The differences of two rulebooks; their warnings are printed, and added to ``warned``."""
 
@@ -170,30 +163,30 @@ def _difference(
         warned.extend(diagnostics)
 
     named = []
-    if question.paired or question.patterns:
-        named = [lazy.load_rulebook(name, search_path(), at) for name in rulebooks]
-        refuse_unmatched(question.patterns, named)
+    if asked.paired or asked.patterns:
+        named = [lazy.load_rulebook(name, search_path(), asked.at) for name in rulebooks]
+        refuse_unmatched(asked.patterns, named)
     with progress("comparing", None) as tell:
         first, second = rulebooks
-        return rulec.Session(search_path(), at, warn).diff(
+        return rulec.Session(search_path(), asked.at, warn).diff(
             first,
             second,
-            patterns=question.patterns,
-            step_s=question.step_s,
-            witnesses=question.n_witnesses,
-            paired=_pairs(question.paired, named),
+            patterns=asked.patterns,
+            step_s=asked.step_s,
+            witnesses=asked.n_witnesses,
+            paired=_pairs(asked.paired, named),
             on_progress=tell,
         )
 
 
 def _on_topic(
-    rulebooks: Sequence[str], about: tuple[str, str], to: Output, *, in_full: bool
+    rulebooks: Sequence[str], topic: str, asked: DiffOptions
 ) -> tuple[str, Sequence[str]]:
-    """What rulebooks say on a topic, by the law of a day, and the files that were read."""
-    topic, at = about
-    read = [lazy.read_rulebook(name, search_path(), at) for name in rulebooks]
+    """What rulebooks say on a topic, and the files that were read."""
+    read = [lazy.read_rulebook(name, search_path(), asked.at) for name in rulebooks]
     books = rules_on_topic([loaded.rulebook for loaded in read], topic)
-    text = lazy.topic_report.render(books, topic, to.form, width_of(to), in_full=in_full)
+    form, width = asked.to.form, width_of(asked.to)
+    text = lazy.topic_report.render(books, topic, form, width, in_full=asked.verbose)
     return text, [path for loaded in read for path in loaded.sources]
 
 
@@ -203,36 +196,16 @@ def _write_witnesses(difference: lazy.RulebookDiff, path: str) -> None:
     print_remark(f"wrote {counted(number, 'trace')} to {name}")
 
 
-class TwoBooks(NamedTuple):
-    """The request for a comparison of two rulebooks."""
-
-    patterns: tuple[str, ...]
-    paired: tuple[str, ...]
-    step_s: Fraction | None
-    n_witnesses: int
-
-
-class AllPairs(NamedTuple):
-    """The request for an overview of many rulebooks."""
-
-    patterns: tuple[str, ...]
-    step_s: Fraction | None
-    at: str
-    form: str
-    width: int
-
-
-def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output) -> int:
+def _compared(rulebooks: Sequence[str], asked: DiffOptions) -> int:
     """Write the overview of these rulebooks, or of all, and return the status."""
-    folders = search_path()
-    names = list(dict.fromkeys(rulebooks or available_rulebooks(folders)))
-    every = "" if rulebooks else "all"
-    question = AnswerQuestion(("diff", every, *map(str, pairs), "", *names), folders)
+    to = asked.to
+    names = list(dict.fromkeys(rulebooks or available_rulebooks(search_path())))
+    question = asked.question("named" if rulebooks else "all", names)
     known = question.recall()
     if known is None:
         with answer_lines(to) as write:
             text, alone, is_complete, is_uniform, paths = _matrix(
-                names, pairs, write, is_all=not rulebooks
+                names, asked, write, is_all=not rulebooks
             )
         known = text, alone, is_complete, is_uniform
         if is_complete:
@@ -250,12 +223,13 @@ def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output) -> int:
 
 
 def _matrix(
-    names: Sequence[str], pairs: AllPairs, write: Callable[[str], object], *, is_all: bool
+    names: Sequence[str], asked: DiffOptions, write: Callable[[str], object], *, is_all: bool
 ) -> tuple[str, tuple[str, ...], bool, bool, list[str]]:
     """The overview, the rulebooks left out, whether it is complete and uniform, and the files read.
 
     It is written as it is made; for fewer than two rulebooks it is empty.
     """
+    shown = asked.to.form, width_of(asked.to)
     paths: list[str] = []
     parts: list[str] = []
 
@@ -264,7 +238,7 @@ def _matrix(
         for reference, name in lazy.named_by_heads(names, search_path()).items():
             loaded = None
             with errors_told():
-                loaded = lazy.read_rulebook(reference, search_path(), pairs.at)
+                loaded = lazy.read_rulebook(reference, search_path(), asked.at)
             if loaded is not None:
                 paths.extend(loaded.sources)
                 yield replace(loaded.rulebook, name=name)
@@ -276,13 +250,13 @@ def _matrix(
 
     matrix = lazy.ComparisonMatrix((), ())
     with progress("comparing", len(names)) as tell:
-        for matrix in lazy.growing_matrices(books(), pairs.patterns, pairs.step_s):
+        for matrix in lazy.growing_matrices(books(), asked.patterns, asked.step_s):
             tell(len(matrix.books))
-            lines = lazy.matrix_report.last_pairs(matrix, pairs.form, pairs.width)
+            lines = lazy.matrix_report.last_pairs(matrix, *shown)
             if lines and not parts:
-                put(lazy.matrix_report.opening(pairs.form, pairs.width))
+                put(lazy.matrix_report.opening(*shown))
             put("\n".join(lines))
-    refuse_unmatched(pairs.patterns, matrix.books)
+    refuse_unmatched(asked.patterns, matrix.books)
     is_read = len(matrix.books) == len(names)
     uses = Counter(rule.name for book in matrix.books for rule in book.rules)
     alone = tuple(
@@ -292,7 +266,7 @@ def _matrix(
     )
     matrix = matrix.without(alone)
     if len(matrix.books) > 1:
-        put(lazy.matrix_report.render(matrix, pairs.form, pairs.width))
+        put(lazy.matrix_report.render(matrix, *shown))
     is_complete = is_read and matrix.is_complete
     return "\n".join(parts), alone, is_complete, matrix.is_uniform, paths
 

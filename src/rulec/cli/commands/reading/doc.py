@@ -10,7 +10,7 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import option, verb
 from rulec.cli.output import errors_told, open_session, put_answer, sources_of_rulebooks, told_apart
 from rulec.files.written_files import make_folder
 from rulec.logic.sentences.language import LANGUAGES, LanguageCode
@@ -21,24 +21,27 @@ Format: TypeAlias = Literal["html", "markdown"]
 _ENDINGS = endings_of("html", "markdown")
 
 
-@click.command(cls=Verb)
-@shared.rulebooks_argument()
-@output_options(
-    _ENDINGS,
-    "the document",
-    former=["--format"],
-    instead="A browser prints the page and saves it as PDF.",
-    folders=True,
-)
-@click.option(
-    "--language",
-    type=click.Choice(LANGUAGES),
-    default="en",
-    show_default=True,
-    help="The language of headings and generated sentences. What the author wrote is kept as is.",
-)
-@shared.at_option
-def command(rulebooks: tuple[str, ...], to: Output, language: str, at: str) -> int:
+@verb
+def command(
+    *,
+    rulebooks: tuple[str, ...] = shared.rulebooks_argument(),
+    to: Output = output_options(
+        _ENDINGS,
+        "the document",
+        former=["--format"],
+        instead="A browser prints the page and saves it as PDF.",
+        folders=True,
+    ),
+    language: str = option(
+        "--language",
+        type=click.Choice(LANGUAGES),
+        default="en",
+        show_default=True,
+        help="The language of headings and generated sentences. What the author wrote is kept as "
+        "is.",
+    ),
+    at: str = shared.at_option,
+) -> int:
     """Write each RULEBOOK (a name, or the path of a source) as a document for lawyers.
 
     It contains every rule with its provision, in plain language, as a formula, and with its

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -16,18 +15,12 @@ from rulec.cli.commands.traffic.find import moments_of
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.recording_options import (
-    DrivesOptions,
-    RecordingOptions,
-    drives_options,
-    egos_option,
-    recording_or_trace_options,
-)
+from rulec.cli.options.recording_options import TrafficOptions, traffic_options
 from rulec.cli.options.shell_completion import complete_codes
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import answer_lines, put_answer, width_of
 from rulec.cli.verb_table import FORMER, VERBS
-from rulec.diagnostics import RulecError, any_of, first_of, nearest_name
+from rulec.diagnostics import any_of, first_of, nearest_name
 from rulec.diagnostics.code import Code
 from rulec.logic.formula import Atom
 from rulec.recordings.recording_inputs import STANDARD_INPUT, input_files
@@ -46,32 +39,24 @@ _SLIP = 3
 """The most letters by which a misspelt definition is longer or shorter."""
 
 
-@click.command(cls=Verb)
-@click.argument(
-    "names", nargs=-1, metavar="[CODE|WORD]... [FILE]...", shell_complete=complete_codes
-)
-@click.option("--all", "every", is_flag=True, help="Explain every code.")
-@egos_option
-@drives_options
-@recording_or_trace_options
-@shared.rulebook_option(
-    "a word has the meaning of one rulebook",
-    "The rulebook (name or source) by which a WORD is read in FILE...  [default: road's own words]",
-    required=False,
-)
-@output_options(
-    endings_of("full", "json", "markdown"),
-    "the explanation: text, JSON or Markdown",
-)
+@verb
 def command(
-    names: tuple[str, ...],
-    egos: tuple[str, ...],
-    rulebook: str | None,
-    to: Output,
     *,
-    every: bool,
-    drives: DrivesOptions,
-    recorded: RecordingOptions,
+    names: tuple[str, ...] = argument(
+        nargs=-1, metavar="[CODE|WORD]... [FILE]...", shell_complete=complete_codes
+    ),
+    every: bool = option("--all", is_flag=True, help="Explain every code."),
+    traffic: TrafficOptions = traffic_options,
+    rulebook: str | None = shared.rulebook_option(
+        "a word has the meaning of one rulebook",
+        "The rulebook (name or source) by which a WORD is read in FILE...  [default: road's own "
+        "words]",
+        required=False,
+    ),
+    to: Output = output_options(
+        endings_of("full", "json", "markdown"),
+        "the explanation: text, JSON or Markdown",
+    ),
 ) -> int:
     """Explain each CODE, such as R0104: what it means, with a bad example and its correction.
 
@@ -85,9 +70,8 @@ def command(
     if every == bool(names):
         raise click.UsageError("give a code or a word, such as `R0104` or `gap`, or --all")
     if any(map(_is_of_files, names[1:])):
-        found = partial(moments_of, egos=egos, drives=drives, recorded=recorded)
-        return _shown_values(names, rulebook or "", to, found)
-    if egos or rulebook:
+        return _shown_values(names, rulebook or "", to, traffic)
+    if traffic.egos or rulebook:
         raise click.UsageError("`--ego` and `-r` are for the values of a word in a FILE")
     question = ("explain", *names, repr((every, to.form, width_of(to))))
     explained = partial(_explained, names, to.form, width_of(to), every=every)
@@ -104,13 +88,11 @@ def _is_of_files(name: str) -> bool:
 
 
 def _shown_values(
-    names: tuple[str, ...], rulebook: str, to: Output, found: Callable[..., Iterator[Any]]
+    names: tuple[str, ...], rulebook: str, to: Output, traffic: TrafficOptions
 ) -> int:
     """Show the values of a word in files."""
-    word, complaints, inputs = names[0], Complaints(), input_files(names[1:])
-    for problem in inputs.problems:
-        complaints.add(problem)
-    complete = not inputs.problems
+    word, inputs = names[0], input_files(names[1:])
+    complaints = Complaints(inputs.problems)
     query = lazy.read_query("true", rulebook=rulebook, search_path=search_path())
     known = {**query.vocabulary.enumeration_of, **query.vocabulary.declarations}
     if word not in known:
@@ -121,15 +103,11 @@ def _shown_values(
     lines_of = lazy.word_values.json_lines if to.form == "json" else as_text
     with answer_lines(to) as write:
         look = partial(lazy.word_values.word_spans, name=word)
-        for drive in found(query, inputs.paths, look=look):
-            if isinstance(drive, RulecError):
-                complete = False
-                complaints.add(drive)
-                continue
+        for drive in moments_of(query, inputs.paths, traffic, complaints, look):
             for line in lines_of(drive):
                 write(line)
     complaints.close()
-    return ExitStatus.after(answered=complete, failed=False)
+    return ExitStatus.after(answered=not complaints, failed=False)
 
 
 def _explained(

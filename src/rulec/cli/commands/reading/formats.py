@@ -7,24 +7,22 @@ import click
 import rulec
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import put_answer
 from rulec.diagnostics import did_you_mean
 from rulec.report.text.console import page_width
 
 
-@click.command(cls=Verb)
-@click.argument("names", nargs=-1, metavar="[NAME]...")
-@click.option(
-    "--words",
-    is_flag=True,
-    help="Also list which words of the vocabulary `road` each format can provide.",
-)
-@output_options(endings_of("text", "markdown", "json"), "the list")
+@verb
 def command(
-    names: tuple[str, ...],
-    words: bool,
-    to: Output,
+    *,
+    names: tuple[str, ...] = argument(nargs=-1, metavar="[NAME]..."),
+    words: bool = option(
+        "--words",
+        is_flag=True,
+        help="Also list which words of the vocabulary `road` each format can provide.",
+    ),
+    to: Output = output_options(endings_of("text", "markdown", "json"), "the list"),
 ) -> None:
     """List the supported formats of recorded traffic and of maps, or describe NAME.
 

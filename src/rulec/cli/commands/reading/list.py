@@ -15,7 +15,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shared_options import rules_on_topic
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, verb
 from rulec.cli.output import errors_told, open_session, put_answer, sources_of_rulebooks, width_of
 from rulec.rulebook.batch.answer_cache import AnswerQuestion
 from rulec.rulebook.files.search_path import available_rulebooks
@@ -24,18 +24,16 @@ from rulec.settings import search_path
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
 
-@click.command(cls=Verb)
-@click.argument("kind", type=click.Choice([*KINDS, "rules", "formats"]), required=False)
-@shared.rulebooks_argument("[RULEBOOK]...", required=False)
-@output_options(endings_of("text", "json"), "the list")
-@shared.topic_option("With `rules`: list only those on a topic")
-@shared.at_option
+@verb
 def command(
-    kind: Kind | Literal["rules"] | None,
-    rulebooks: tuple[str, ...],
-    to: Output,
-    topic: str | None,
-    at: str,
+    *,
+    kind: Kind | Literal["rules"] | None = argument(
+        type=click.Choice([*KINDS, "rules", "formats"]), required=False
+    ),
+    rulebooks: tuple[str, ...] = shared.rulebooks_argument("[RULEBOOK]...", required=False),
+    to: Output = output_options(endings_of("text", "json"), "the list"),
+    topic: str | None = shared.topic_option("With `rules`: list only those on a topic"),
+    at: str = shared.at_option,
 ) -> int:
     """List everything that can be named, with its title; without KIND all kinds except codes.
 

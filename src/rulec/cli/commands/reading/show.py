@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import click
 
@@ -19,7 +18,7 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shared_options import rules_on_topic
 from rulec.cli.options.shell_completion import complete_rules
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, gathered, option, verb
 from rulec.cli.output import books_and_rule, errors_told, put_answer, rulebooks_named, width_of
 from rulec.diagnostics import first_of, named, nearest_name
 from rulec.report.text.console import print_remark
@@ -30,34 +29,34 @@ _MOST_NAMED = 6
 """The most rules listed where one has to be chosen."""
 
 
-@click.command(cls=Verb)
-@shared.rulebook_argument
-@click.argument("others", nargs=-1, metavar="[RULEBOOK...] [RULE]", shell_complete=complete_rules)
-@click.option(
-    "--automaton",
-    type=click.Choice(["text", "dot", "svg"]),
-    help="Show only the rule's automaton: as text, for Graphviz, or as a picture.",
-)
-@output_options(
-    endings_of("text", "json", "dot", "svg"),
-    "the rule: text, JSON, or its automaton for Graphviz or as a picture",
-    alias="automaton",
-)
-@shared.rules_option("Show only rules that match PATTERN")
-@shared.topic_option("Show only rules on a topic")
-@click.option("--all", "every", is_flag=True, help="Show every rule in plain English, not a list.")
-@shared.at_option
-def command(
-    rulebook: str,
-    others: tuple[str, ...],
-    *,
-    patterns: tuple[str, ...],
-    topic: str | None,
-    every: bool,
-    automaton: str | None,
-    to: Output,
-    at: str,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class ShowOptions:
+    """The rules to show, and how."""
+
+    rulebook: str = shared.rulebook_argument
+    others: tuple[str, ...] = argument(
+        nargs=-1, metavar="[RULEBOOK...] [RULE]", shell_complete=complete_rules
+    )
+    automaton: str | None = option(
+        "--automaton",
+        type=click.Choice(["text", "dot", "svg"]),
+        help="Show only the rule's automaton: as text, for Graphviz, or as a picture.",
+    )
+    to: Output = output_options(
+        endings_of("text", "json", "dot", "svg"),
+        "the rule: text, JSON, or its automaton for Graphviz or as a picture",
+        alias="automaton",
+    )
+    patterns: tuple[str, ...] = shared.rules_option("Show only rules that match PATTERN")
+    topic: str | None = shared.topic_option("Show only rules on a topic")
+    every: bool = option(
+        "--all", is_flag=True, help="Show every rule in plain English, not a list."
+    )
+    at: str = shared.at_option
+
+
+@verb
+def command(*, asked: ShowOptions = gathered(ShowOptions)) -> int:
     """Show a RULE of a RULEBOOK: in plain English, as a formula, as an automaton, with examples.
 
     The English sentence is generated from the formula and is unambiguous. Without RULE every rule
@@ -65,25 +64,25 @@ def command(
     --topic, is shown in full. With several RULEBOOKs, folders or patterns, the RULE is shown for
     each; JSON has one line each.
     """
-    if patterns:
-        books, rule = rulebooks_named((rulebook, *others)), None
+    to, rule = asked.to, None
+    if asked.patterns:
+        books = rulebooks_named((asked.rulebook, *asked.others))
     else:
-        books, rule = books_and_rule((rulebook, *others), "show")
-    request = ShowRequest(name=rule, patterns=patterns, topic=topic, every=every, to=to, at=at)
-    if automaton is not None or to.form in ("dot", "svg"):
+        books, rule = books_and_rule((asked.rulebook, *asked.others), "show")
+    if asked.automaton is not None or to.form in ("dot", "svg"):
         if len(books) > 1:
             raise click.UsageError("an automaton is of one rule; give one RULEBOOK")
-        put_answer(_automaton_of(books[0], request), to)
+        put_answer(_automaton_of(books[0], rule, asked), to)
         return ExitStatus.OK
     if len(books) == 1:
-        put_answer(_known(books[0], request, several=False), to)
+        put_answer(_known(books[0], rule, asked, several=False), to)
         return ExitStatus.OK
     shown: list[str] = []
     missing: list[click.UsageError] = []
     for book in books:
         with errors_told(), _collected(missing):
-            text = _known(book, request, several=True)
-            alone = to.form == "json" or (rule is None and not every)
+            text = _known(book, rule, asked, several=True)
+            alone = to.form == "json" or (rule is None and not asked.every)
             shown.append(text if alone else f"{book}\n\n{text}\n")
     if missing and not shown:
         raise missing[0]
@@ -102,32 +101,24 @@ def _collected(problems: list[click.UsageError]) -> Iterator[None]:
         problems.append(problem)
 
 
-class ShowRequest(NamedTuple):
-    """The rules to show, and how."""
-
-    name: str | None
-    patterns: tuple[str, ...]
-    topic: str | None
-    every: bool
-    to: Output
-    at: str
-
-
-def _known(reference: str, request: ShowRequest, *, several: bool) -> str:
+def _known(reference: str, name: str | None, request: ShowOptions, *, several: bool) -> str:
     """A rule as text or JSON, or all that match in brief; one JSON line each if ``several``."""
-    shown = partial(_shown, reference, request, several=several)
+    shown = partial(_shown, reference, name, request, several=several)
     if Path(reference).suffix == ".json":
         return shown()[0]
     refuse_source(reference)
-    words = ("show", reference, repr((*request, width_of(request.to), several)))
+    same = replace(request, rulebook="", others=(), to=Output("", request.to.form))
+    words = ("show", reference, repr((name, same, width_of(request.to), several)))
     return str(AnswerQuestion(words, search_path()).answer(shown))
 
 
-def _shown(reference: str, request: ShowRequest, *, several: bool) -> tuple[str, Sequence[str]]:
+def _shown(
+    reference: str, name: str | None, request: ShowOptions, *, several: bool
+) -> tuple[str, Sequence[str]]:
     """What to show, and the files that it comes from; none for a compiled rulebook."""
     whole, compiled, paths = _read(reference, request.at)
     book = _matching(whole, request)
-    chosen = _chosen(book, request.name, reference)
+    chosen = _chosen(book, name, reference)
     if book.rules and chosen is None and request.to.form == "text" and not request.every:
         some = "" if request.topic or not book.topics else ", `--topic overtaking` some"
         ways_on = f"a RULE's name shows it in full{some}, `--all` every one"
@@ -148,7 +139,7 @@ def _shown(reference: str, request: ShowRequest, *, several: bool) -> tuple[str,
     return "\n\n\n".join(pages), paths
 
 
-def _matching(book: lazy.Rulebook, request: ShowRequest) -> lazy.Rulebook:
+def _matching(book: lazy.Rulebook, request: ShowOptions) -> lazy.Rulebook:
     """The rulebook with only the rules on the topic that match one of the patterns, if any."""
     if request.topic is not None:
         book = rules_on_topic([book], request.topic)[0]
@@ -160,16 +151,16 @@ def _matching(book: lazy.Rulebook, request: ShowRequest) -> lazy.Rulebook:
     return replace(book, rules=rules)
 
 
-def _automaton_of(reference: str, request: ShowRequest) -> str:
+def _automaton_of(reference: str, name: str | None, request: ShowOptions) -> str:
     """The automaton of a rule, in the requested format."""
     whole, compiled, _ = _read(reference, request.at)
     book = _matching(whole, request)
-    chosen = _chosen(book, request.name, reference)
+    chosen = _chosen(book, name, reference)
     if chosen is None:
         raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
     page = _page(book, compiled, chosen)
-    name = f"{book.name} {chosen.name}"
-    return _automaton(page.automaton, request.to.form, name, width_of(request.to))
+    title = f"{book.name} {chosen.name}"
+    return _automaton(page.automaton, request.to.form, title, width_of(request.to))
 
 
 def _page(

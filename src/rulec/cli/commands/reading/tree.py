@@ -10,7 +10,7 @@ import click
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import option, verb
 from rulec.cli.output import open_session, put_answer, sources_of_rulebooks, width_of
 from rulec.diagnostics import named
 from rulec.report.findings.diagnostics_text import print_diagnostics
@@ -19,16 +19,16 @@ from rulec.rulebook.batch.answer_cache import AnswerQuestion
 from rulec.settings import search_path
 
 
-@click.command(cls=Verb)
-@shared.rulebooks_argument("[RULEBOOK...]", required=False)
-@shared.rules_option("Show only rules that match PATTERN")
-@click.option(
-    "--all", "every", is_flag=True, help="Show the history of all rules and of what can be set."
-)
-@output_options(endings_of("text", "json"), "the tree")
-@shared.at_option
+@verb
 def command(
-    rulebooks: tuple[str, ...], patterns: tuple[str, ...], every: bool, to: Output, at: str
+    *,
+    rulebooks: tuple[str, ...] = shared.rulebooks_argument("[RULEBOOK...]", required=False),
+    patterns: tuple[str, ...] = shared.rules_option("Show only rules that match PATTERN"),
+    every: bool = option(
+        "--all", is_flag=True, help="Show the history of all rules and of what can be set."
+    ),
+    to: Output = output_options(endings_of("text", "json"), "the tree"),
+    at: str = shared.at_option,
 ) -> None:
     """Show what a RULEBOOK overrides, softens and drops, has of its own, and only inherits.
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from itertools import islice
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import click
 
@@ -27,13 +28,14 @@ from rulec.cli.options.recording_options import (
 from rulec.cli.options.scenario_options import (
     ReadingOptions,
     SceneOptions,
-    graph_options,
+    cell_options,
     reading_options,
+    scenario_argument,
 )
 from rulec.cli.options.shared_options import refuse_unmatched, with_rules_like
 from rulec.cli.options.standard_input import file_named
-from rulec.cli.options.verb_class import VerbGroup
-from rulec.cli.output import output_stream, print_written, read_machines
+from rulec.cli.options.verb_class import VerbGroup, argument, asking, gathered, option
+from rulec.cli.output import put_picture, read_machines
 from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.diagnostics.fault_messages import contained
 from rulec.recordings.recording_files import read_recording
@@ -49,21 +51,23 @@ _picture_options = output_options(
     endings_of("svg", "png", "pdf", "html"), "the picture", required=True, former=["--format"]
 )
 
-_judging_options = shared.combined(
-    [
-        shared.rulebook_option(
-            _WHY_ONE, shared.RULEBOOK_HELP + " Without it, nothing is judged.", required=False
-        ),
-        shared.number_option(
-            "--maneuver",
-            "number",
-            "Show the N-th cheapest satisfying maneuver.  [default: 1 if there is a rulebook]",
-            least=1,
-        ),
-        reading_options,
-        shared.at_option,
-    ]
-)
+
+@dataclass(frozen=True, kw_only=True)
+class JudgedScene:
+    """A scenario as cells, and the rulebook that judges its maneuvers, if there is one."""
+
+    scenario: str = scenario_argument
+    cut: SceneOptions = cell_options
+    rulebook: str | None = shared.rulebook_option(
+        _WHY_ONE, shared.RULEBOOK_HELP + " Without it, nothing is judged.", required=False
+    )
+    number: int | None = shared.number_option(
+        "--maneuver",
+        "Show the N-th cheapest satisfying maneuver.  [default: 1 if there is a rulebook]",
+        least=1,
+    )
+    missing: ReadingOptions = reading_options
+    at: str = shared.at_option
 
 
 @click.group(cls=VerbGroup, invoke_without_command=True)
@@ -80,38 +84,29 @@ def command(context: click.Context) -> None:
 
 
 @command.command()
-@click.argument("file")
-@shared.rulebook_option(_WHY_ONE)
-@click.option(
-    "--trace", "trace_id", metavar="ID", help="Draw the trace with this id.  [default: the first]"
-)
-@shared.rules_option("Draw only what rules that match PATTERN read")
-@click.option(
-    "--object",
-    "only",
-    multiple=True,
-    metavar="ID",
-    help="Draw only this object. May be given several times.",
-)
-@click.option(
-    "--all",
-    "every_row",
-    is_flag=True,
-    help="Draw what any rule reads, not only the violated rules.",
-)
-@input_format_option(TRACE_FORMATS, "the traces.  [default: by the extension of FILE, else jsonl]")
-@shared.at_option
-@_picture_options
+@asking
 def trace(
-    file: str,
-    rulebook: str,
-    trace_id: str | None,
-    patterns: tuple[str, ...],
-    only: tuple[str, ...],
-    every_row: bool,
-    input_format: lazy.Format | None,
-    at: str,
-    to: Output,
+    *,
+    file: str = argument(),
+    rulebook: str = shared.rulebook_option(_WHY_ONE),
+    trace_id: str | None = option(
+        "--trace", metavar="ID", help="Draw the trace with this id.  [default: the first]"
+    ),
+    patterns: tuple[str, ...] = shared.rules_option("Draw only what rules that match PATTERN read"),
+    only: tuple[str, ...] = option(
+        "--object",
+        multiple=True,
+        metavar="ID",
+        help="Draw only this object. May be given several times.",
+    ),
+    every_row: bool = option(
+        "--all", is_flag=True, help="Draw what any rule reads, not only the violated rules."
+    ),
+    input_format: lazy.Format | None = input_format_option(
+        TRACE_FORMATS, "the traces.  [default: by the extension of FILE, else jsonl]"
+    ),
+    at: str = shared.at_option,
+    to: Output = _picture_options,
 ) -> None:
     """Draw a trace of FILE (JSON Lines, CSV or Parquet): the values that violated rules read.
 
@@ -126,50 +121,43 @@ def trace(
                 f"trace `{drawn.id}` has no object `{item}`; it has {named(list(drawn.objects))}."
             )
     used = _only(lazy.rulebook_for_trace(drawn, rules), patterns)
-    _write(lazy.trace_drawing(drawn, used, only, patterns, every_row=every_row), to)
+    put_picture(lazy.trace_drawing(drawn, used, only, patterns, every_row=every_row), to)
 
 
 @command.command()
-@click.argument("file")
-@shared.rulebook_option(_WHY_ONE)
-@click.option(
-    "--ego",
-    default="",
-    metavar="ID",
-    help="The vehicle, or one of its drives such as 373#2.  [default: the first one to violate "
-    "a rule]",
-)
-@shared.rules_option("Show only violations of rules that match PATTERN")
-@click.option(
-    "--at-time",
-    "at_s",
-    type=float,
-    callback=shared.finite,
-    metavar="S",
-    help="The time to draw, in s of the recording.  [default: the first violation]",
-)
-@click.option(
-    "--theme",
-    type=click.Choice(["auto", "light", "dark"]),
-    default="auto",
-    show_default=True,
-    help="Light or dark; `auto` follows the reader's theme, and is light in PNG and PDF.",
-)
-@drives_options
-@recording_options
-@shared.at_option
-@_picture_options
+@asking
 def drive(
-    file: str,
-    rulebook: str,
-    ego: str,
-    patterns: tuple[str, ...],
-    at_s: float | None,
-    theme: Theme,
-    drives: DrivesOptions,
-    recorded: RecordingOptions,
-    at: str,
-    to: Output,
+    *,
+    file: str = argument(),
+    rulebook: str = shared.rulebook_option(_WHY_ONE),
+    ego: str = option(
+        "--ego",
+        default="",
+        metavar="ID",
+        help="The vehicle, or one of its drives such as 373#2.  [default: the first one to violate "
+        "a rule]",
+    ),
+    patterns: tuple[str, ...] = shared.rules_option(
+        "Show only violations of rules that match PATTERN"
+    ),
+    at_s: float | None = option(
+        "--at-time",
+        type=float,
+        callback=shared.finite,
+        metavar="S",
+        help="The time to draw, in s of the recording.  [default: the first violation]",
+    ),
+    theme: Theme = option(
+        "--theme",
+        type=click.Choice(["auto", "light", "dark"]),
+        default="auto",
+        show_default=True,
+        help="Light or dark; `auto` follows the reader's theme, and is light in PNG and PDF.",
+    ),
+    drives: DrivesOptions = drives_options,
+    recorded: RecordingOptions = recording_options,
+    at: str = shared.at_option,
+    to: Output = _picture_options,
 ) -> None:
     """Draw a drive of the recording FILE from above: the road, all traffic, the violations.
 
@@ -184,45 +172,43 @@ def drive(
     verdicts = rulec.verify_recording(recording, rules, wanted)
     with contained("not drawn", SourceLocation(file)):
         drawing = lazy.drive_drawing(verdicts, ego if part else "", kept, at_s)
-    _write(drawing, to, theme)
+    put_picture(drawing, to, theme)
 
 
 @command.command()
-@graph_options
-@_judging_options
-@shared.number_option(
-    "--layer",
-    "layers",
-    "Draw only layer P, counted from 0; may be given several times.  [default: all]",
-    multiple=True,
-    metavar="P",
-)
-@_picture_options
-def scene(layers: tuple[int, ...], to: Output, **options: Any) -> None:
+@asking
+def scene(
+    *,
+    judged: JudgedScene = gathered(JudgedScene),
+    layers: tuple[int, ...] = shared.number_option(
+        "--layer",
+        "Draw only layer P, counted from 0; may be given several times.  [default: all]",
+        multiple=True,
+        metavar="P",
+    ),
+    to: Output = _picture_options,
+) -> None:
     """Draw SCENARIO (a name or a file) over time: cells with signatures, obstacles, a maneuver.
 
     With a rulebook, the cells of the cheapest satisfying maneuver are highlighted; their bounds are
     its envelope. An HTML page has a time slider.
     """
-    graph, maneuvers, maneuver = _judged(**options)
+    graph, maneuvers, maneuver = _judged(judged)
     last = len(graph.layers) - 1
     if layers and max(layers) > last:
         raise click.UsageError(f"There is no layer {max(layers)}; they are 0 to {last}.")
-    number = options["number"] or 1
-    _write(lazy.scene_drawing(graph, maneuvers, maneuver, layers, number), to)
+    put_picture(lazy.scene_drawing(graph, maneuvers, maneuver, layers, judged.number or 1), to)
 
 
 @command.command()
-@graph_options
-@_judging_options
-@_picture_options
-def graph(to: Output, **options: Any) -> None:
+@asking
+def graph(*, judged: JudgedScene = gathered(JudgedScene), to: Output = _picture_options) -> None:
     """Draw the navigation graph of SCENARIO (a name or a file), layer by layer.
 
     With a rulebook, the edges of satisfying maneuvers are drawn differently from those of rejected
     ones, and the cheapest satisfying maneuver is highlighted.
     """
-    _write(lazy.graph_drawing(*_judged(**options)), to)
+    put_picture(lazy.graph_drawing(*_judged(judged)), to)
 
 
 def _trace(file: str, trace_id: str | None, form: lazy.Format | None) -> Trace:
@@ -242,24 +228,17 @@ def _only(rules: lazy.CompiledRulebook, patterns: tuple[str, ...]) -> lazy.Compi
     return with_rules_like(rules, patterns)
 
 
-def _judged(
-    scenario: str,
-    cut: SceneOptions,
-    missing: ReadingOptions,
-    *,
-    rulebook: str | None,
-    number: int | None,
-    at: str,
-) -> Judged:
+def _judged(judged: JudgedScene) -> Judged:
     """The graph, its maneuvers if there is a rulebook, and the maneuver shown."""
-    if rulebook is None:
+    scenario, cut, missing, number = judged.scenario, judged.cut, judged.missing, judged.number
+    if judged.rulebook is None:
         if number is not None:
             raise click.UsageError("`--maneuver` takes a rulebook: give one with `-r R`.")
         missing.reading(None)
         scene = cut.scene(scenario)
         with contained("not drawn", SourceLocation(scenario)):
             return rulec.navigation_graph(scene, **cut.cells("paper")), None, None
-    rules = read_machines(rulebook, at)
+    rules = read_machines(judged.rulebook, judged.at)
     reading = missing.reading(rules.vocabulary)
     scene = cut.scene(scenario)
     with contained("not drawn", SourceLocation(scenario)):
@@ -276,10 +255,3 @@ def _judged(
             why += ", and fewer were found that ego can drive"
         raise click.UsageError(f"There is no maneuver {number}: {why}.")
     return maneuvers.graph, maneuvers, maneuver
-
-
-def _write(drawing: lazy.Drawing, to: Output, theme: Theme = "auto") -> None:
-    data = lazy.picture_formats.as_bytes(drawing, to.form, to.path, theme)
-    with output_stream(to) as (stream, _):
-        stream.write(data)
-    print_written(to.path, to)

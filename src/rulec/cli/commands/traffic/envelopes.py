@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import cast
 
-import click
-
 import rulec
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
@@ -14,10 +12,11 @@ from rulec.cli.options.output_options import TABLES, Output, output_options
 from rulec.cli.options.scenario_options import (
     ReadingOptions,
     SceneOptions,
-    graph_options,
+    cell_options,
     reading_options,
+    scenario_argument,
 )
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import verb
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.fault_messages import contained
@@ -27,23 +26,18 @@ from rulec.report.text.terminal_text import shown_count
 _WHY_ONE = "a planner's table has the maneuvers of one rulebook"
 
 
-@click.command(cls=Verb)
-@graph_options
-@shared.rulebook_option(_WHY_ONE)
-@output_options(TABLES, "the table", required=True, former=["--format"])
-@shared.number_option(
-    "--list", "number", "Write the N cheapest satisfying maneuvers.", least=1, default=1
-)
-@reading_options
-@shared.at_option
+@verb
 def command(
-    scenario: str,
-    rulebook: str,
-    to: Output,
-    number: int,
-    cut: SceneOptions,
-    missing: ReadingOptions,
-    at: str,
+    *,
+    scenario: str = scenario_argument,
+    cut: SceneOptions = cell_options,
+    rulebook: str = shared.rulebook_option(_WHY_ONE),
+    to: Output = output_options(TABLES, "the table", required=True, former=["--format"]),
+    number: int = shared.number_option(
+        "--list", "Write the N cheapest satisfying maneuvers.", least=1, default=1
+    ),
+    missing: ReadingOptions = reading_options,
+    at: str = shared.at_option,
 ) -> int:
     """Write the envelopes of the cheapest satisfying maneuvers of SCENARIO (a name or a file).
 

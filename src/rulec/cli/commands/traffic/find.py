@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from itertools import chain
@@ -22,20 +23,12 @@ from rulec.cli.options.output_options import (
     output_options,
     refuse_overwriting,
 )
-from rulec.cli.options.recording_options import (
-    DrivesOptions,
-    RecordingOptions,
-    assumptions,
-    drives_options,
-    egos_option,
-    recording_or_trace_options,
-)
-from rulec.cli.options.standard_input import not_standard_input, standard_input
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.recording_options import TrafficOptions, assumptions, traffic_options
+from rulec.cli.options.standard_input import input_stream, not_standard_input
+from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import answer_lines, output_stream, print_written
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.fault_messages import contained
-from rulec.files.read_files import opened
 from rulec.recordings.recording_files import is_recording, read_recordings
 from rulec.recordings.recording_inputs import input_files
 from rulec.report.findings.diagnostics_text import Complaints
@@ -46,46 +39,35 @@ from rulec.settings import search_path
 FORMATS = {**endings_of("text", "json"), **TABLES}
 
 
-@click.command(cls=Verb)
-@click.argument("formula")
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@click.option(
-    "-u",
-    "--use",
-    "vocabulary",
-    default="",
-    metavar="NAME",
-    callback=not_standard_input("a vocabulary is found by its name; give a rulebook, as `-r -`"),
-    help="The vocabulary that the formula uses.  [default: road, or the rulebook's]",
-)
-@shared.rulebook_option(
-    "a formula is in the words of one rulebook",
-    "A rulebook (name or source) whose words, definitions and parameters the formula may use, in "
-    "addition to those of --use.",
-    required=False,
-)
-@click.option(
-    "--sure",
-    is_flag=True,
-    help="List only moments that are certain, whatever the unknown values are.",
-)
-@egos_option
-@drives_options
-@recording_or_trace_options
-@output_options(FORMATS, "the moments")
-@shared.at_option
+@verb
 def command(
-    formula: str,
-    files: tuple[str, ...],
-    vocabulary: str,
-    rulebook: str | None,
-    egos: tuple[str, ...],
-    at: str,
-    to: Output,
     *,
-    sure: bool,
-    drives: DrivesOptions,
-    recorded: RecordingOptions,
+    formula: str = argument(),
+    files: tuple[str, ...] = argument(nargs=-1, required=True, metavar="FILE..."),
+    vocabulary: str = option(
+        "-u",
+        "--use",
+        default="",
+        metavar="NAME",
+        callback=not_standard_input(
+            "a vocabulary is found by its name; give a rulebook, as `-r -`"
+        ),
+        help="The vocabulary that the formula uses.  [default: road, or the rulebook's]",
+    ),
+    rulebook: str | None = shared.rulebook_option(
+        "a formula is in the words of one rulebook",
+        "A rulebook (name or source) whose words, definitions and parameters the formula may use, "
+        "in addition to those of --use.",
+        required=False,
+    ),
+    sure: bool = option(
+        "--sure",
+        is_flag=True,
+        help="List only moments that are certain, whatever the unknown values are.",
+    ),
+    traffic: TrafficOptions = traffic_options,
+    to: Output = output_options(FORMATS, "the moments"),
+    at: str = shared.at_option,
 ) -> int:
     """List the moments at which FORMULA holds in FILE..., recorded traffic or traces.
 
@@ -113,19 +95,11 @@ def command(
         search_path=search_path(),
         at=at,
     )
-    complaints = Complaints()
-    for problem in inputs.problems:
-        complaints.add(problem)
+    complaints = Complaints(inputs.problems)
     tally = lazy.moment_rows.MomentTally()
-    complete = not inputs.problems
 
     def found() -> Iterator[lazy.DriveMoments]:
-        nonlocal complete
-        for drive in moments_of(query, inputs.paths, egos, drives, recorded):
-            if isinstance(drive, RulecError):
-                complete = False
-                complaints.add(drive)
-                continue
+        for drive in moments_of(query, inputs.paths, traffic, complaints):
             if sure:
                 kept = [moment for moment in drive.moments if moment.holds == "surely"]
                 drive = replace(drive, moments=kept)
@@ -149,46 +123,43 @@ def command(
             writer.close()
     print_written(to.path, to)
     complaints.close()
-    return ExitStatus.after(answered=complete, failed=False)
+    return ExitStatus.after(answered=not complaints, failed=False)
 
 
 def moments_of(
     query: FormulaQuery,
-    paths: tuple[str, ...],
-    egos: tuple[str, ...],
-    drives: DrivesOptions,
-    recorded: RecordingOptions,
-    *,
+    paths: Sequence[str],
+    traffic: TrafficOptions,
+    complaints: Complaints,
     look: lazy.Look | None = None,
-) -> Iterator[lazy.DriveMoments | RulecError]:
-    """The moments of all drives of all files, and the errors of those that could not be read.
+) -> Iterator[lazy.DriveMoments]:
+    """The moments of all drives of all files, or whatever else one is to ``look`` for.
 
-    Or whatever else one is to ``look`` for.
+    ``complaints`` gets the errors of what could not be read.
     """
     look = look or lazy.moments
-    form = recorded.trace_format
+    recorded, form = traffic.recorded, traffic.recorded.trace_format
     named = recorded.input_format is not None
-    wanted = drives.requested(egos, query.vocabulary)
-    source = recorded.source("-")
-    assumed = assumptions(None, drives.assumed, query.vocabulary)
+    wanted, source = traffic.requested(query.vocabulary), recorded.source("-")
+    assumed = assumptions(None, traffic.drives.assumed, query.vocabulary)
     for path in paths:
         is_stream = path == STANDARD_OUTPUT
+        found: Iterable[lazy.DriveMoments | RulecError] = ()
         try:
-            with contained("not searched", SourceLocation(path)):
+            with ExitStack() as stack:
+                stack.enter_context(contained("not searched", SourceLocation(path)))
                 if form is None and (named or (not is_stream and is_recording(path))):
                     recordings = read_recordings(replace(source, path=Path(path)))
-                    yield from lazy.in_recordings(recordings, query, wanted, path, look)
-                    continue
-                if is_stream:
-                    chunks = lazy.read_chunks(standard_input(), "standard input", form or "jsonl")
-                    yield from lazy.in_traces(
-                        chain.from_iterable(chunks), query, assumed, path, look
-                    )
-                    continue
-                with opened(Path(path)) as stream:
-                    chunks = lazy.read_chunks(stream, path, form or lazy.format_of(path))
-                    yield from lazy.in_traces(
-                        chain.from_iterable(chunks), query, assumed, path, look
-                    )
+                    found = lazy.in_recordings(recordings, query, wanted, path, look)
+                else:
+                    stream, name = stack.enter_context(input_stream(path))
+                    own = form or ("jsonl" if is_stream else lazy.format_of(path))
+                    traces = chain.from_iterable(lazy.read_chunks(stream, name, own))
+                    found = lazy.in_traces(traces, query, assumed, path, look)
+                for drive in found:
+                    if isinstance(drive, RulecError):
+                        complaints.add(drive)
+                    else:
+                        yield drive
         except RulecError as error:
-            yield error
+            complaints.add(error)

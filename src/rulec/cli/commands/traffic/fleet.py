@@ -20,52 +20,42 @@ from rulec.cli.options.recording_options import (
     recording_options,
 )
 from rulec.cli.options.standard_input import not_standard_input
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import read_machines, rulebooks_named, told_apart
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_result, progress
 from rulec.trace.trace_model import Ending
 
 
-@click.command(cls=Verb)
-@click.argument(
-    "inputs",
-    nargs=-1,
-    required=True,
-    metavar="INPUT...",
-    callback=not_standard_input("each process reads its part of a file by itself"),
-)
-@shared.rulebooks_option(
-    shared.RULEBOOK_HELP + " May be given several times, for findings side by side."
-)
-@click.option(
-    "-o",
-    "--output",
-    "folder",
-    required=True,
-    metavar="DIR",
-    type=click.Path(file_okay=False, path_type=Path),
-    help="The folder for the findings; with several rulebooks it gets a folder for each. An "
-    "interrupted run is resumed from it.",
-)
-@shared.choice_option(
-    "--on", ["local", "ray", "spark"], "What distributes the work.", former=["--engine"]
-)
-@shared.jobs_option("Judge N recordings, or pieces of tables, in parallel")
-@shared.end_option
-@drives_options
-@recording_options
-@shared.at_option
+@verb
 def command(
-    inputs: tuple[str, ...],
-    rulebooks: tuple[str, ...],
-    folder: Path,
-    on: Any,
-    jobs: Jobs,
-    ends: Ending | None,
-    drives: DrivesOptions,
-    recorded: RecordingOptions,
-    at: str,
+    *,
+    inputs: tuple[str, ...] = argument(
+        nargs=-1,
+        required=True,
+        metavar="INPUT...",
+        callback=not_standard_input("each process reads its part of a file by itself"),
+    ),
+    rulebooks: tuple[str, ...] = shared.rulebooks_option(
+        shared.RULEBOOK_HELP + " May be given several times, for findings side by side."
+    ),
+    folder: Path = option(
+        "-o",
+        "--output",
+        required=True,
+        metavar="DIR",
+        type=click.Path(file_okay=False, path_type=Path),
+        help="The folder for the findings; with several rulebooks it gets a folder for each. An "
+        "interrupted run is resumed from it.",
+    ),
+    on: Any = shared.choice_option(
+        "--on", ["local", "ray", "spark"], "What distributes the work.", former=["--engine"]
+    ),
+    jobs: Jobs = shared.jobs_option("Judge N recordings, or pieces of tables, in parallel"),
+    ends: Ending | None = shared.end_option,
+    drives: DrivesOptions = drives_options,
+    recorded: RecordingOptions = recording_options,
+    at: str = shared.at_option,
 ) -> int:
     """Judge all drives in INPUT... and write the findings as Parquet files to DIR.
 

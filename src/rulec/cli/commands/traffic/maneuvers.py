@@ -17,7 +17,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import gathered, option, verb
 from rulec.cli.output import (
     answer_lines,
     errors_told,
@@ -36,30 +36,26 @@ from rulec.report.text.console import page_width, print_remark
 class ManeuverQuestions:
     """The questions about a scenario's maneuvers besides their numbers."""
 
-    n_listed: int | None = shared.asked(
+    n_listed: int | None = shared.number_option(
         "--list",
-        make=shared.number_option,
-        help_text="List the N cheapest satisfying maneuvers.",
+        "List the N cheapest satisfying maneuvers.",
     )
-    n_ranked: int | None = shared.asked(
+    n_ranked: int | None = shared.number_option(
         "--rank",
-        make=shared.number_option,
-        help_text="List the N best maneuvers: ranked by what they violate (hard rules before soft "
+        "List the N best maneuvers: ranked by what they violate (hard rules before soft "
         "ones, by level and weight), then by cost.",
     )
-    why: bool = shared.asked(
+    why: bool = option(
         "--why",
         is_flag=True,
         help="Show for every rule how many maneuvers violate it, how many violate no other hard "
         "rule, and an example; of listed maneuvers why each rule is open.",
     )
-    n_classes: int | None = shared.asked(
+    n_classes: int | None = shared.number_option(
         "--classes",
-        make=shared.number_option,
-        help_text="Count the homotopy classes, and list the cheapest satisfying maneuver of N of "
-        "them.",
+        "Count the homotopy classes, and list the cheapest satisfying maneuver of N of them.",
     )
-    worlds: bool = shared.asked(
+    worlds: bool = option(
         "--worlds",
         is_flag=True,
         help="If obstacles have several predictions, also count the maneuvers that remain when one "
@@ -99,36 +95,30 @@ class ManeuverQuestions:
         )
 
 
-@click.command(cls=Verb)
-@scenario_options.scenarios_argument
-@scenario_options.cell_options
-@shared.rulebooks_option(
-    shared.RULEBOOK_HELP + " May be given several times, for counts side by side."
-)
-@shared.gathered("questions", ManeuverQuestions)
-@click.option(
-    "--after",
-    metavar="FILE",
-    type=click.Path(dir_okay=False),
-    callback=shared.beside,
-    help="The past to continue from: a file with one trace, or a saved monitor (.json).",
-)
-@scenario_options.reading_options
-@click.option(
-    "--strict", is_flag=True, help="Exit with 1 if no maneuver certainly satisfies every hard rule."
-)
-@output_options(endings_of("text", "json"), "the answer")
-@shared.at_option
+@verb
 def command(
-    scenarios: tuple[str, ...],
-    rulebooks: tuple[str, ...],
-    after: Path | None,
-    strict: bool,
-    to: Output,
-    cut: scenario_options.SceneOptions,
-    missing: scenario_options.ReadingOptions,
-    questions: ManeuverQuestions,
-    at: str,
+    *,
+    scenarios: tuple[str, ...] = scenario_options.scenarios_argument,
+    cut: scenario_options.SceneOptions = scenario_options.cell_options,
+    rulebooks: tuple[str, ...] = shared.rulebooks_option(
+        shared.RULEBOOK_HELP + " May be given several times, for counts side by side."
+    ),
+    questions: ManeuverQuestions = gathered(ManeuverQuestions),
+    after: Path | None = option(
+        "--after",
+        metavar="FILE",
+        type=click.Path(dir_okay=False),
+        callback=shared.beside,
+        help="The past to continue from: a file with one trace, or a saved monitor (.json).",
+    ),
+    missing: scenario_options.ReadingOptions = scenario_options.reading_options,
+    strict: bool = option(
+        "--strict",
+        is_flag=True,
+        help="Exit with 1 if no maneuver certainly satisfies every hard rule.",
+    ),
+    to: Output = output_options(endings_of("text", "json"), "the answer"),
+    at: str = shared.at_option,
 ) -> int:
     """Count the maneuvers of each SCENARIO (a name or a file) that satisfy every hard rule.
 

@@ -20,7 +20,7 @@ from rulec.cli.options.output_options import (
 )
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.options.standard_input import STANDARD_INPUT, standard_input
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import answer_lines, open_session, print_written
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.report.findings.diagnostics_text import Complaints
@@ -36,37 +36,32 @@ def _no_states(_: click.Context, __: click.Parameter, value: str) -> str:
     return value
 
 
-@click.command(cls=Verb)
-@click.argument("rulebook", callback=_no_states, shell_complete=complete_rulebooks)
-@shared.step_option(
-    "The time step between states, in s: a decimal, or a fraction such as 1/3. It matters only "
-    "for rules with bounds in seconds.  [default: that of their examples, or of --restore]",
-)
-@click.option(
-    "--restore",
-    metavar="FILE",
-    type=click.Path(dir_okay=False, allow_dash=True),
-    help="Resume the monitor saved in FILE; `-` reads it from the first line of standard input, "
-    "before the states.",
-)
-@click.option(
-    "--save",
-    metavar="FILE",
-    type=click.Path(dir_okay=False, allow_dash=True),
-    help="Save the monitor to FILE when it ends, however it ends.",
-)
-@output_options(
-    {**endings_of("text"), "json": (".jsonl", ".ndjson", ".json")},
-    "the verdicts, one line per state",
-)
-@shared.at_option
+@verb
 def command(
-    rulebook: str,
-    step_s: Fraction | None,
-    restore: str | None,
-    save: str | None,
-    to: Output,
-    at: str,
+    *,
+    rulebook: str = argument(callback=_no_states, shell_complete=complete_rulebooks),
+    step_s: Fraction | None = shared.step_option(
+        "The time step between states, in s: a decimal, or a fraction such as 1/3. It matters only "
+        "for rules with bounds in seconds.  [default: that of their examples, or of --restore]",
+    ),
+    restore: str | None = option(
+        "--restore",
+        metavar="FILE",
+        type=click.Path(dir_okay=False, allow_dash=True),
+        help="Resume the monitor saved in FILE; `-` reads it from the first line of standard "
+        "input, before the states.",
+    ),
+    save: str | None = option(
+        "--save",
+        metavar="FILE",
+        type=click.Path(dir_okay=False, allow_dash=True),
+        help="Save the monitor to FILE when it ends, however it ends.",
+    ),
+    to: Output = output_options(
+        {**endings_of("text"), "json": (".jsonl", ".ndjson", ".json")},
+        "the verdicts, one line per state",
+    ),
+    at: str = shared.at_option,
 ) -> int:
     """Judge states from standard input, one JSON object per line, as they arrive.
 

@@ -10,8 +10,8 @@ from rulec.cli import lazy_imports as lazy
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.standard_input import not_standard_input
-from rulec.cli.options.verb_class import Verb
-from rulec.cli.output import output_stream, print_written, put_answer, width_of
+from rulec.cli.options.verb_class import argument, option, verb
+from rulec.cli.output import put_answer, put_picture, width_of
 from rulec.diagnostics.fault_messages import contained
 
 GROUPS = ("rulebook", "country", "road", "source", "file", "recording")
@@ -25,47 +25,43 @@ def _confidence(_: click.Context, __: click.Parameter, value: float) -> float:
     return value
 
 
-@click.command(cls=Verb)
-@click.argument(
-    "files",
-    nargs=-1,
-    required=True,
-    metavar="FINDINGS...",
-    callback=not_standard_input("findings say by their file's name what form they have"),
-)
-@click.option(
-    "--by",
-    multiple=True,
-    type=click.Choice(GROUPS),
-    help="Group drives by this. May be given several times.",
-)
-@click.option(
-    "--confidence",
-    type=float,
-    default=0.95,
-    show_default=True,
-    callback=_confidence,
-    metavar="P",
-    help="The confidence level of the intervals.",
-)
-@shared.number_option(
-    "--seed", "seed", "The random seed of the bootstrap over drives.", default=0, most=2**32 - 1
-)
-@click.option(
-    "--per",
-    type=click.Choice(PER),
-    default=PER[0],
-    show_default=True,
-    help="The rate that a picture shows.",
-)
-@output_options(endings_of("text", "markdown", "csv", "json", *PICTURES), "the rates")
+@verb
 def command(
-    files: tuple[str, ...],
-    by: tuple[lazy.GroupKey, ...],
-    confidence: float,
-    seed: int,
-    per: str,
-    to: Output,
+    *,
+    files: tuple[str, ...] = argument(
+        nargs=-1,
+        required=True,
+        metavar="FINDINGS...",
+        callback=not_standard_input("findings say by their file's name what form they have"),
+    ),
+    by: tuple[lazy.GroupKey, ...] = option(
+        "--by",
+        multiple=True,
+        type=click.Choice(GROUPS),
+        help="Group drives by this. May be given several times.",
+    ),
+    confidence: float = option(
+        "--confidence",
+        type=float,
+        default=0.95,
+        show_default=True,
+        callback=_confidence,
+        metavar="P",
+        help="The confidence level of the intervals.",
+    ),
+    seed: int = shared.number_option(
+        "--seed", "The random seed of the bootstrap over drives.", default=0, most=2**32 - 1
+    ),
+    per: str = option(
+        "--per",
+        type=click.Choice(PER),
+        default=PER[0],
+        show_default=True,
+        help="The rate that a picture shows.",
+    ),
+    to: Output = output_options(
+        endings_of("text", "markdown", "csv", "json", *PICTURES), "the rates"
+    ),
 ) -> None:
     """Compute how often rules are violated: per hour, per 1000 km, and per opportunity.
 
@@ -80,12 +76,7 @@ def command(
     with contained("no rates"):
         rates = lazy.rates_of_findings(files, by, confidence=confidence, seed=seed)
     if to.form in PICTURES:
-        data = lazy.picture_formats.as_bytes(
-            lazy.rates_drawing(rates, f"per_{per}"), to.form, to.path
-        )
-        with output_stream(to) as (stream, _):
-            stream.write(data)
-        print_written(to.path, to)
+        put_picture(lazy.rates_drawing(rates, f"per_{per}"), to)
         return
     renderers = {
         "json": lazy.rates_table.as_json,

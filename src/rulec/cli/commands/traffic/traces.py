@@ -24,9 +24,9 @@ from rulec.cli.options.recording_options import (
     as_typed,
     drives_options,
 )
-from rulec.cli.options.scenario_options import SceneOptions, graph_options
+from rulec.cli.options.scenario_options import SceneOptions, cell_options, scenario_argument
 from rulec.cli.options.standard_input import file_named
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import option, verb
 from rulec.cli.output import output_stream, print_lost, print_written, read_machines
 from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.fault_messages import contained
@@ -42,38 +42,31 @@ _ALOUD = 100
 Piece = TypeVar("Piece")
 
 
-@click.command(cls=Verb)
-@graph_options
-@shared.rulebook_option(
-    "a file of traces is in the words of one rulebook",
-    "Write the traces in this rulebook's words, with the partition that it needs.",
-    required=False,
-)
-@output_options(TABLES, "the traces", required=True, former=["--format"])
-@shared.number_option(
-    "--first",
-    "first",
-    f"Write only the first N; required if there are more than {MOST_TRACES:,}.",
-    least=1,
-    former=["--limit"],
-)
-@click.option(
-    "--recorded",
-    is_flag=True,
-    help="For recorded traffic: write what the vehicles did (all of them, or only --ego) instead "
-    "of what ego could do.",
-)
-@shared.jobs_option("With --recorded: write the drives of N vehicles in parallel")
-@drives_options
+@verb
 def command(
-    scenario: str,
-    rulebook: str | None,
-    to: Output,
-    first: int | None,
-    recorded: bool,
-    jobs: Jobs,
-    cut: SceneOptions,
-    drives: DrivesOptions,
+    *,
+    scenario: str = scenario_argument,
+    cut: SceneOptions = cell_options,
+    rulebook: str | None = shared.rulebook_option(
+        "a file of traces is in the words of one rulebook",
+        "Write the traces in this rulebook's words, with the partition that it needs.",
+        required=False,
+    ),
+    to: Output = output_options(TABLES, "the traces", required=True, former=["--format"]),
+    first: int | None = shared.number_option(
+        "--first",
+        f"Write only the first N; required if there are more than {MOST_TRACES:,}.",
+        least=1,
+        former=["--limit"],
+    ),
+    recorded: bool = option(
+        "--recorded",
+        is_flag=True,
+        help="For recorded traffic: write what the vehicles did (all of them, or only --ego) "
+        "instead of what ego could do.",
+    ),
+    jobs: Jobs = shared.jobs_option("With --recorded: write the drives of N vehicles in parallel"),
+    drives: DrivesOptions = drives_options,
 ) -> None:
     """Write every maneuver of SCENARIO (a name or a file) as a trace: JSON Lines, CSV or Parquet.
 

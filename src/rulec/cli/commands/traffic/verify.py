@@ -21,16 +21,14 @@ from rulec.cli.options.output_options import (
     refuse_overwriting,
 )
 from rulec.cli.options.recording_options import (
-    DrivesOptions,
     RecordingOptions,
+    TrafficOptions,
     as_typed,
     assumptions,
-    drives_options,
-    egos_option,
-    recording_or_trace_options,
+    traffic_options,
 )
 from rulec.cli.options.shared_options import refuse_unmatched, with_rules_like
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, gathered, option, verb
 from rulec.cli.output import read_machines, rulebooks_named
 from rulec.cli.verdict_outputs import FORMATS, VerdictOutputs, verdict_outputs
 from rulec.recordings.recording_files import check_readable, is_recording
@@ -47,75 +45,60 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 class VerifyOptions:
     """How traces and drives are judged, and what is said of them."""
 
-    n_explained: int | None = shared.asked(
+    n_explained: int | None = shared.number_option(
         "--explain",
-        make=shared.number_option,
-        help_text="Explain the first N violations of each file state by state.  [default: 1 for a "
+        "Explain the first N violations of each file state by state.  [default: 1 for a "
         "single file of traces, 0 with --json]",
     )
-    every_part: bool = shared.asked(
+    every_part: bool = option(
         "--every-part",
         is_flag=True,
         help="Show every part of the formula and every state in explanations, however large the "
         "table.",
     )
-    why: bool = shared.asked(
+    why: bool = option(
         "--why",
         is_flag=True,
         help="Say of every rule whether something or nothing was found, it had no opportunity to "
         "be violated, or it is open or not judged, and which words are missing.",
     )
-    strict: bool = shared.asked(
+    strict: bool = option(
         "--strict",
         is_flag=True,
         help="Count open hard rules as violated: those undecided because values are unknown or the "
         "trace is cut.",
     )
-    ends: Ending | None = shared.asked(make=lambda _: shared.end_option)
-    step_s: Fraction | None = shared.asked(
-        make=lambda _: shared.step_option(
-            "For traces: use S seconds as the time step. A trace whose own step differs by more "
-            "than 5 % (more than the jitter of a logger's clock) is not judged."
-        )
+    ends: Ending | None = shared.end_option
+    step_s: Fraction | None = shared.step_option(
+        "For traces: use S seconds as the time step. A trace whose own step differs by more "
+        "than 5 % (more than the jitter of a logger's clock) is not judged."
     )
-    egos: tuple[str, ...] = shared.asked(make=lambda _: egos_option)
+    traffic: TrafficOptions = traffic_options
+    jobs: Jobs = shared.jobs_option("Judge N recordings, or parts of a long one, in parallel")
 
 
-@click.command(cls=Verb)
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@shared.rulebooks_option(
-    shared.RULEBOOK_HELP + " May be given several times, for verdicts side by side."
-)
-@shared.rules_option("Judge only by rules that match PATTERN")
-@shared.gathered("asked", VerifyOptions)
-@drives_options
-@recording_or_trace_options
-@shared.jobs_option("Judge N recordings, or parts of a long one, in parallel")
-@output_options(
-    FORMATS,
-    "the answer",
-    multiple=True,
-    instead="Pictures and pages are drawn by `rulec draw`.",
-)
-@click.option(
-    "--exposure",
-    is_flag=True,
-    help="In .jsonl, .csv and .parquet also write a row per drive, and per rule with how often "
-    "there was an opportunity to violate it, as input for `rulec rates`.",
-)
-@shared.at_option
+@verb
 def command(
-    files: tuple[str, ...],
-    rulebooks: tuple[str, ...],
-    patterns: tuple[str, ...],
-    asked: VerifyOptions,
-    to: tuple[Output, ...],
-    at: str,
-    jobs: Jobs,
     *,
-    exposure: bool,
-    drives: DrivesOptions,
-    recorded: RecordingOptions,
+    files: tuple[str, ...] = argument(nargs=-1, required=True, metavar="FILE..."),
+    rulebooks: tuple[str, ...] = shared.rulebooks_option(
+        shared.RULEBOOK_HELP + " May be given several times, for verdicts side by side."
+    ),
+    patterns: tuple[str, ...] = shared.rules_option("Judge only by rules that match PATTERN"),
+    asked: VerifyOptions = gathered(VerifyOptions),
+    to: tuple[Output, ...] = output_options(
+        FORMATS,
+        "the answer",
+        multiple=True,
+        instead="Pictures and pages are drawn by `rulec draw`.",
+    ),
+    exposure: bool = option(
+        "--exposure",
+        is_flag=True,
+        help="In .jsonl, .csv and .parquet also write a row per drive, and per rule with how often "
+        "there was an opportunity to violate it, as input for `rulec rates`.",
+    ),
+    at: str = shared.at_option,
 ) -> int:
     """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
 
@@ -139,14 +122,15 @@ def command(
     """
     inputs = input_files(files)
     refuse_overwriting(to, inputs.paths)
-    drives.check_thresholds()
+    if asked.traffic.drives.thresholds:
+        asked.traffic.drives.read_thresholds()
     references = list(dict.fromkeys(rulebooks_named(rulebooks)))
     own = [read_machines(name, at) for name in references]
     refuse_unmatched(patterns, own)
     books = _told_apart([with_rules_like(book, patterns) for book in own], references)
     if len(books) > 1 and STANDARD_OUTPUT in inputs.paths:
         raise click.UsageError("standard input is read once; give a file, or one rulebook")
-    recordings = _recordings(inputs, recorded)
+    recordings = _recordings(inputs, asked.traffic.recorded)
     is_json_alone = to == (Output(STANDARD_OUTPUT, "json"),)
     is_small = len(inputs.paths) == len(books) == 1 and not recordings
     usual = 1 if is_small and not is_json_alone else 0
@@ -155,9 +139,7 @@ def command(
         recordings=recordings,
         traces=[path for path in inputs.paths if path not in recordings],
         asked=asked,
-        drives=drives,
-        recorded=recorded,
-        jobs=jobs,
+        traffic=asked.traffic,
         n_explained=usual if asked.n_explained is None else asked.n_explained,
     )
     _check_inputs(request)
@@ -170,7 +152,8 @@ def command(
         raise click.UsageError("--exposure is for all rules of a rulebook: leave out --rule.")
     with verdict_outputs(to, books[0], with_rows=exposure, strict=asked.strict) as outputs:
         complaints = Complaints()
-        results = []
+        results: list[list[lazy.VerdictRun]] = []
+        failed = False
         for rules, rows_of, reference in zip(books, own, references, strict=True):
             if rules.law or len(books) > 1:
                 headline = lazy.verdict_report.headline(rules, page_width())
@@ -178,21 +161,24 @@ def command(
             if exposure:
                 outputs.to_rows = _to_rows(rows_of, rules.name, request)
             named = ["-r", reference, *(("--at", at) if at else ())]
-            own_request = replace(request, drives=_speaking_of(rules, books, drives))
-            results.append(_judge(own_request, rules, outputs, complaints, named))
+            own_request = replace(request, traffic=_speaking_of(rules, books, asked.traffic))
+            runs = _judge(own_request, rules, outputs, complaints, named)
+            for run in runs:
+                failed |= run.has_failed(strict=asked.strict)
+            results.append(runs)
         if len(books) > 1:
-            tallies = [(rules, result.total) for rules, result in zip(books, results, strict=True)]
+            totals = [lazy.BatchTally.sum_of(run.total for run in runs) for runs in results]
+            tallies = list(zip(books, totals, strict=True))
             outputs.text(f"\n{lazy.as_columns(tallies, page_width())}")
     complaints.close()
-    return ExitStatus.after(
-        answered=all(result.judged and result.complete for result in results),
-        failed=any(result.violated for result in results),
-    )
+    answered = all(any(run.judged for run in runs) for runs in results)
+    is_complete = all(run.complete for runs in results for run in runs)
+    return ExitStatus.after(answered=answered and is_complete, failed=failed)
 
 
 def _speaking_of(
-    rules: lazy.CompiledRulebook, books: Sequence[lazy.CompiledRulebook], drives: DrivesOptions
-) -> DrivesOptions:
+    rules: lazy.CompiledRulebook, books: Sequence[lazy.CompiledRulebook], traffic: TrafficOptions
+) -> TrafficOptions:
     """The options without assumptions about words that another of the rulebooks knows alone."""
 
     def is_others(text: str) -> bool:
@@ -200,7 +186,8 @@ def _speaking_of(
         knowing = [book for book in books if name in book.vocabulary.declarations]
         return bool(knowing) and all(book is not rules for book in knowing)
 
-    return replace(drives, assumed=tuple([x for x in drives.assumed if not is_others(x)]))
+    assumed = tuple([text for text in traffic.drives.assumed if not is_others(text)])
+    return replace(traffic, drives=replace(traffic.drives, assumed=assumed))
 
 
 def _told_apart(
@@ -220,36 +207,21 @@ class VerifyRequest:
     recordings: Sequence[str]
     traces: Sequence[str]
     asked: VerifyOptions
-    drives: DrivesOptions
-    recorded: RecordingOptions
-    jobs: Jobs
+    traffic: TrafficOptions
     n_explained: int
-
-
-@dataclass
-class VerifyResult:
-    """Sums over files judged by one rulebook.
-
-    ``judged``: whether any trace was judged, or there is no rule; ``complete``: whether each was
-    judged; ``violated``: whether hard rules are violated or, with ``--strict``, open.
-    """
-
-    total: lazy.BatchTally
-    judged: bool = False
-    complete: bool = True
-    violated: bool = False
 
 
 def _check_inputs(request: VerifyRequest) -> None:
     """Refuse options that do not apply to the files. Raises click.UsageError, RulecError."""
-    only_drives = replace(request.drives, assumed=()), replace(request.recorded, input_format=None)
-    option = "--ego" if request.asked.egos else next(as_typed(*only_drives), None)
-    if option and not request.recordings and not request.inputs.problems:
+    drives, recorded = request.traffic.drives, request.traffic.recorded
+    only_drives = replace(drives, assumed=()), replace(recorded, input_format=None)
+    given = "--ego" if request.traffic.egos else next(as_typed(*only_drives), None)
+    if given and not request.recordings and not request.inputs.problems:
         for path in request.inputs.paths:
             if path != STANDARD_INPUT:
                 check_readable(Path(path))
         raise click.UsageError(
-            f"{option} is for recorded traffic, and no file looks like it; add `--input-format "
+            f"{given} is for recorded traffic, and no file looks like it; add `--input-format "
             "tracks`, or another of `rulec list formats`, to learn what is missing"
         )
     if request.asked.ends is not None and request.recordings:
@@ -277,73 +249,41 @@ def _judge(
     outputs: VerdictOutputs,
     complaints: Complaints,
     named: Sequence[str],
-) -> VerifyResult:
+) -> list[lazy.VerdictRun]:
     """Judge all files by one rulebook; the options that it was ``named`` by are for messages."""
-    result = VerifyResult(lazy.BatchTally())
+    asked, traffic = request.asked, request.traffic
+    runs: list[lazy.VerdictRun] = []
     if request.recordings or request.inputs.problems:
-        recorded = _judge_recordings(request, rules, outputs, complaints, named)
-        _include(result, recorded, strict=request.asked.strict)
-        result.complete &= recorded.complete
+        to_rows = outputs.to_rows
+        source = (*request.recordings, *named, *as_typed(traffic.drives, traffic.recorded))
+        settings = lazy.JudgeSettings(
+            rules,
+            traffic.requested(rules.vocabulary),
+            traffic.recorded.source("-"),
+            to_explain=request.n_explained,
+            every_part=asked.every_part,
+            layout=lazy.AnswerLayout(page_width(), asked.why, source) if outputs.texts else None,
+            findings=bool(outputs.writers),
+            to_line=lazy.recording_line if outputs.lines else None,
+            to_rows=None if to_rows is None else to_rows.of_answer,
+            idle_rules=lazy.idle_rules if asked.why else None,
+        )
+        recorded = lazy.RecordingRun(rules, outputs, complaints, settings=settings)
+        for problem in request.inputs.problems:
+            recorded.not_read(problem)
+        if request.recordings:
+            recorded.files(request.recordings, asked.jobs)
+        runs.append(recorded)
     if request.traces:
-        traced = _judge_traces(request, rules, outputs, complaints)
-        _include(result, traced, strict=request.asked.strict)
-        result.complete &= traced.complete and not traced.total.not_judged
-    return result
-
-
-def _judge_recordings(
-    request: VerifyRequest,
-    rules: lazy.CompiledRulebook,
-    outputs: VerdictOutputs,
-    complaints: Complaints,
-    named: Sequence[str],
-) -> lazy.RecordingRun:
-    to_rows = outputs.to_rows
-    given = as_typed(request.drives, request.recorded)
-    source = (*request.recordings, *named, *given)
-    settings = lazy.JudgeSettings(
-        rules,
-        request.drives.requested(request.asked.egos, rules.vocabulary),
-        request.recorded.source("-"),
-        to_explain=request.n_explained,
-        every_part=request.asked.every_part,
-        layout=lazy.AnswerLayout(page_width(), request.asked.why, source)
-        if outputs.wants_text
-        else None,
-        findings=outputs.wants_findings,
-        to_line=lazy.recording_line if outputs.wants_lines else None,
-        to_rows=None if to_rows is None else to_rows.of_answer,
-        idle_rules=lazy.idle_rules if request.asked.why else None,
-    )
-    run = lazy.RecordingRun(settings, outputs, complaints)
-    for problem in request.inputs.problems:
-        run.not_read(problem)
-    if request.recordings:
-        run.files(request.recordings, request.jobs)
-    return run
-
-
-def _judge_traces(
-    request: VerifyRequest,
-    rules: lazy.CompiledRulebook,
-    outputs: VerdictOutputs,
-    complaints: Complaints,
-) -> lazy.TraceRun:
-    assumed = assumptions(request.asked.ends, request.drives.assumed, rules.vocabulary)
-    step = None if request.asked.step_s is None else float(request.asked.step_s)
-    n_explained, every_part = request.n_explained, request.asked.every_part
-    run = lazy.TraceRun(rules, outputs, complaints, n_explained, every_part)
-    run.files(request.traces, request.recorded.trace_format, replace(assumed, step_s=step))
-    return run
-
-
-def _include(result: VerifyResult, run: lazy.RecordingRun | lazy.TraceRun, *, strict: bool) -> None:
-    is_broken = bool(run.total.outcomes["violated"])
-    if strict and run.open_hard and not is_broken:
-        click.echo("note: a hard rule is open, which counts as violated by `--strict`", err=True)
-    result.violated |= is_broken or (strict and run.open_hard)
-    result.judged |= run.judged
-    result.total.include(run.total)
+        assumed = assumptions(asked.ends, traffic.drives.assumed, rules.vocabulary)
+        step = None if asked.step_s is None else float(asked.step_s)
+        n_explained, every_part = request.n_explained, asked.every_part
+        traced = lazy.TraceRun(
+            rules, outputs, complaints, to_explain=n_explained, every_part=every_part
+        )
+        traced.files(request.traces, traffic.recorded.trace_format, replace(assumed, step_s=step))
+        runs.append(traced)
+    return runs
 
 
 def _to_rows(rules: lazy.CompiledRulebook, name: str, request: VerifyRequest) -> lazy.DriveRows:
@@ -351,10 +291,9 @@ def _to_rows(rules: lazy.CompiledRulebook, name: str, request: VerifyRequest) ->
 
     Its hash remains that of the rulebook itself, by which findings of other calls have it.
     """
-    wanted = request.drives.requested(request.asked.egos, rules.vocabulary)
-    return lazy.DriveRows(
-        rules, replace(lazy.judged_by(rules, wanted, request.asked.ends or ""), rulebook=name)
-    )
+    wanted = request.traffic.requested(rules.vocabulary)
+    by = lazy.judged_by(rules, wanted, request.asked.ends or "")
+    return lazy.DriveRows(rules, replace(by, rulebook=name))
 
 
 def _recordings(inputs: InputFiles, recorded: RecordingOptions) -> list[str]:

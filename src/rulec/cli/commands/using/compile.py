@@ -15,7 +15,7 @@ from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, refuse_overwriting, refuse_standard_output
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import option, verb
 from rulec.cli.output import errors_told, open_session, rulebooks_named, told_apart
 from rulec.diagnostics import SourceLocation, named
 from rulec.diagnostics.fault_messages import contained
@@ -49,64 +49,55 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
     return bounds
 
 
-@click.command(cls=Verb)
-@shared.rulebooks_argument()
-@shared.step_option(
-    "The time step of the automata, in s: a decimal, or a fraction such as 1/3. It matters only "
-    "for rules with bounds in seconds; the compiled rulebook judges traces of any step.  "
-    "[default: the step of their examples]",
-)
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    metavar="DIR",
-    help="The folder to write to; it is created if necessary.",
-)
-@shared.choice_option(
-    "--emit",
-    ["automata", "c", "rust", "ros2", "ltl"],
-    "What to write: automata and the compiled rulebook; a monitor in C, in Rust or for ROS 2; or "
-    "formulas in linear temporal logic for other tools.",
-)
-@click.option(
-    "--objects",
-    metavar="TYPE=N",
-    multiple=True,
-    callback=_bounds,
-    help="The most objects of a type that a monitor watches at once; may be given several times.  "
-    "[default: 16 of each top-level type]",
-)
-@click.option(
-    "--prove",
-    is_flag=True,
-    help="Also compile the monitor with a C compiler, check it against its tables and "
-    "write a report.",
-)
-@click.option(
-    "--no-certificate",
-    is_flag=True,
-    help="Skip the second, independent compilation that certifies the first; it takes about as "
-    "long.",
-)
-@click.option(
-    "--clocks",
-    is_flag=True,
-    help="Write automata for any step: a bound in seconds is a clock, which their header defines. "
-    "A tool has to know it.",
-)
-@shared.at_option
+@verb
 def command(
-    rulebooks: tuple[str, ...],
     *,
-    output: str,
-    step_s: Fraction | None,
-    emit: Literal["automata", "c", "rust", "ros2", "ltl"],
-    objects: Mapping[str, int],
-    prove: bool,
-    no_certificate: bool,
-    clocks: bool,
-    at: str,
+    rulebooks: tuple[str, ...] = shared.rulebooks_argument(),
+    step_s: Fraction | None = shared.step_option(
+        "The time step of the automata, in s: a decimal, or a fraction such as 1/3. It matters "
+        "only for rules with bounds in seconds; the compiled rulebook judges traces of any step.  "
+        "[default: the step of their examples]",
+    ),
+    output: str = option(
+        "-o",
+        "--output",
+        required=True,
+        metavar="DIR",
+        help="The folder to write to; it is created if necessary.",
+    ),
+    emit: Literal["automata", "c", "rust", "ros2", "ltl"] = shared.choice_option(
+        "--emit",
+        ["automata", "c", "rust", "ros2", "ltl"],
+        "What to write: automata and the compiled rulebook; a monitor in C, in Rust or for ROS 2; "
+        "or formulas in linear temporal logic for other tools.",
+    ),
+    objects: Mapping[str, int] = option(
+        "--objects",
+        metavar="TYPE=N",
+        multiple=True,
+        callback=_bounds,
+        help="The most objects of a type that a monitor watches at once; may be given several "
+        "times.  [default: 16 of each top-level type]",
+    ),
+    prove: bool = option(
+        "--prove",
+        is_flag=True,
+        help="Also compile the monitor with a C compiler, check it against its tables and "
+        "write a report.",
+    ),
+    no_certificate: bool = option(
+        "--no-certificate",
+        is_flag=True,
+        help="Skip the second, independent compilation that certifies the first; it takes about as "
+        "long.",
+    ),
+    clocks: bool = option(
+        "--clocks",
+        is_flag=True,
+        help="Write automata for any step: a bound in seconds is a clock, which their header "
+        "defines. A tool has to know it.",
+    ),
+    at: str = shared.at_option,
 ) -> int:
     """Compile each RULEBOOK: a name, or the path of a source.
 

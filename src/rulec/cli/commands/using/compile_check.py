@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import click
-
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.standard_input import read_as_file
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, verb
 from rulec.cli.output import errors_told, put_answer
 from rulec.diagnostics import first_of
 from rulec.report.text.console import print_remark
@@ -19,10 +17,14 @@ _MOST_NAMED = 6
 """So many of the files passed over are named."""
 
 
-@click.command(cls=Verb)
-@click.argument("files", nargs=-1, required=True, metavar="FILE...", callback=read_as_file)
-@output_options(endings_of("text", "json"), "the results")
-def command(files: tuple[str, ...], to: Output) -> int:
+@verb
+def command(
+    *,
+    files: tuple[str, ...] = argument(
+        nargs=-1, required=True, metavar="FILE...", callback=read_as_file
+    ),
+    to: Output = output_options(endings_of("text", "json"), "the results"),
+) -> int:
     """Prove that every table in compiled rulebooks is equivalent to its formula.
 
     Each table is compared, on all words, to a machine built afresh from the formula by a program

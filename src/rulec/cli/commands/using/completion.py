@@ -5,14 +5,17 @@ from __future__ import annotations
 import click
 from click.shell_completion import get_completion_class
 
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, verb
 from rulec.report.text.console import print_result
 
 
-@click.command(cls=Verb)
-@click.argument("shell", type=click.Choice(["bash", "fish", "zsh"]))
+@verb
 @click.pass_context
-def command(context: click.Context, shell: str) -> None:
+def command(
+    context: click.Context,
+    *,
+    shell: str = argument(type=click.Choice(["bash", "fish", "zsh"])),
+) -> None:
     """Print the script for SHELL: bash (4.4 or later), zsh or fish.
 
     \b

@@ -8,7 +8,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from rulec.cli import lazy_imports as lazy
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import Verb, argument, asking
 from rulec.cli.verb_table import FORMER, VERBS, called
 from rulec.diagnostics import nearest_name
 from rulec.report.findings.code_registry import code_named
@@ -24,9 +24,13 @@ def _verbs(_: click.Context, __: click.Parameter, incomplete: str) -> list[Compl
 
 
 @click.command(cls=Verb, context_settings={"ignore_unknown_options": True})
-@click.argument("words", nargs=-1, metavar="[COMMAND]", shell_complete=_verbs)
+@asking
 @click.pass_context
-def command(context: click.Context, words: tuple[str, ...]) -> None:
+def command(
+    context: click.Context,
+    *,
+    words: tuple[str, ...] = argument(nargs=-1, metavar="[COMMAND]", shell_complete=_verbs),
+) -> None:
     """Show the help of COMMAND, such as `check` or `draw drive`; without COMMAND list all."""
     here = context.find_root()
     if words and words[0] in (*VERBS, *FORMER):

@@ -8,16 +8,19 @@ from inspect import cleandoc
 import click
 
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import verb
 from rulec.cli.output import put_answer
 from rulec.cli.verb_table import COMMANDS, VERB_GROUPS
 from rulec.version import __version__
 
 
-@click.command(cls=Verb)
-@output_options(endings_of("roff"), "the page")
+@verb
 @click.pass_context
-def command(context: click.Context, to: Output) -> None:
+def command(
+    context: click.Context,
+    *,
+    to: Output = output_options(endings_of("roff"), "the page"),
+) -> None:
     """Write the manual page rulec(1), with every command and its options.
 
     \b

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from functools import partial
 
-import click
-
 from rulec.analysis.lint.finding_messages import NOT_DECIDED
 from rulec.batch.jobs import Jobs
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import verb
 from rulec.cli.output import (
     errors_told,
     open_session,
@@ -27,19 +25,14 @@ from rulec.rulebook.batch.answer_cache import AnswerQuestion
 from rulec.settings import search_path
 
 
-@click.command(cls=Verb)
-@shared.rulebooks_argument()
-@shared.findings_options
-@shared.jobs_option("Analyze N rules in parallel")
-@shared.no_cache_option
-@shared.at_option
+@verb
 def command(
-    rulebooks: tuple[str, ...],
-    to: Output,
     *,
-    fail_on: str,
-    jobs: Jobs,
-    at: str,
+    rulebooks: tuple[str, ...] = shared.rulebooks_argument(),
+    to: Output = shared.findings_option,
+    fail_on: str = shared.fail_on_option,
+    jobs: Jobs = shared.jobs_option("Analyze N rules in parallel"),
+    at: str = shared.no_cache_and(shared.at_option),
 ) -> int:
     """Analyze the automata of RULEBOOKs (names, or paths of sources) for mistakes.
 

@@ -8,13 +8,14 @@ from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import Output
 from rulec.cli.options.shared_options import (
     at_option,
-    findings_options,
-    no_cache_option,
+    fail_on_option,
+    findings_option,
+    no_cache_and,
     verbose_option,
 )
 from rulec.cli.options.shell_completion import complete_sources
 from rulec.cli.options.standard_input import standard_input
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import print_findings, print_left_alone, width_of
 from rulec.cli.watching import watch as watch_sources
 from rulec.cli.watching import watch_option
@@ -27,34 +28,31 @@ from rulec.rulebook.batch.shipped_lock import not_as_locked, write_lock
 from rulec.settings import exclusion, search_path
 
 
-@click.command(cls=Verb)
-@click.argument("sources", nargs=-1, metavar="[FILE|NAME]...", shell_complete=complete_sources)
-@findings_options
-@no_cache_option
-@click.option(
-    "--fix",
-    is_flag=True,
-    help="Apply the edits that messages suggest. They may change what rules mean: review them.",
-)
-@click.option(
-    "--lock",
-    is_flag=True,
-    help="Record in rulec.lock the hashes of the shipped rulebooks that these build upon; later "
-    "checks report any that have changed.",
-)
-@verbose_option
-@watch_option
-@at_option
+@verb
 def command(
-    sources: tuple[str, ...],
-    to: Output,
     *,
-    fail_on: str,
-    at: str,
-    fix: bool,
-    lock: bool,
-    verbose: bool,
-    watch: bool,
+    sources: tuple[str, ...] = argument(
+        nargs=-1, metavar="[FILE|NAME]...", shell_complete=complete_sources
+    ),
+    to: Output = findings_option,
+    fail_on: str = fail_on_option,
+    fix: bool = no_cache_and(
+        option(
+            "--fix",
+            is_flag=True,
+            help="Apply the edits that messages suggest. They may change what rules mean: review "
+            "them.",
+        )
+    ),
+    lock: bool = option(
+        "--lock",
+        is_flag=True,
+        help="Record in rulec.lock the hashes of the shipped rulebooks that these build upon; "
+        "later checks report any that have changed.",
+    ),
+    verbose: bool = verbose_option,
+    watch: bool = watch_option,
+    at: str = at_option,
 ) -> int:
     """Check rulebooks and vocabularies for mistakes, without changing any file unless asked.
 

@@ -10,7 +10,7 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.shared_options import verbose_option
 from rulec.cli.options.standard_input import standard_input
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import print_left_alone
 from rulec.files.read_files import MAX_SOURCE_BYTES
 from rulec.report.findings.diagnostics_text import print_diagnostics
@@ -21,12 +21,18 @@ from rulec.rulebook.batch.batch_format import Formatted, format_files, formatted
 from rulec.settings import exclusion, search_path
 
 
-@click.command(cls=Verb)
-@click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path(allow_dash=True))
-@click.option("--check", is_flag=True, help="Write nothing; name the files that would change.")
-@click.option("--diff", is_flag=True, help="Write nothing; print what would change.")
-@verbose_option
-def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -> int:
+@verb
+def command(
+    *,
+    paths: tuple[str, ...] = argument(
+        nargs=-1, metavar="[PATH]...", type=click.Path(allow_dash=True)
+    ),
+    check: bool = option(
+        "--check", is_flag=True, help="Write nothing; name the files that would change."
+    ),
+    diff: bool = option("--diff", is_flag=True, help="Write nothing; print what would change."),
+    verbose: bool = verbose_option,
+) -> int:
     """Format rulebooks and vocabularies in place.
 
     Each PATH is a file, a pattern or a folder (its sources at any depth, except what git ignores,

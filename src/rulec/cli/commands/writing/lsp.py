@@ -12,7 +12,7 @@ import click
 from rulec import resources
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import option, verb
 from rulec.language_server.language_server_messages import no_pygls
 
 
@@ -83,17 +83,18 @@ EDITORS: dict[str, Callable[[list[str]], str]] = {
 """Editors by name, each with the function that writes its settings for a command."""
 
 
-@click.command(cls=Verb)
-@click.option(
-    "--settings",
-    "editor",
-    type=click.Choice([*EDITORS]),
-    help="Print the settings for this editor, and exit.",
-)
-@click.option(
-    "--stdio", is_flag=True, help="Accepted because some editors pass it; it has no effect."
-)
-def command(*, editor: str | None, stdio: bool) -> int:  # noqa: ARG001 - it does so anyway
+@verb
+def command(
+    *,
+    editor: str | None = option(
+        "--settings",
+        type=click.Choice([*EDITORS]),
+        help="Print the settings for this editor, and exit.",
+    ),
+    stdio: bool = option(  # noqa: ARG001 - it does so anyway
+        "--stdio", is_flag=True, help="Accepted because some editors pass it; it has no effect."
+    ),
+) -> int:
     """Serve an editor: diagnostics, completion, renaming and more.
 
     The editor starts this command and speaks the Language Server Protocol with it over standard

@@ -9,7 +9,7 @@ import click
 import rulec
 from rulec.cli.options.output_options import refuse_standard_output
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import argument, option, verb
 from rulec.diagnostics import SourceLocation
 from rulec.files.file_messages import UNWRITABLE_FILE
 from rulec.files.written_files import make_folder, written_whole
@@ -18,24 +18,25 @@ from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
 
 
-@click.command(cls=Verb)
-@click.argument("name")
-@click.option(
-    "-o",
-    "--output",
-    default=".",
-    metavar="DIR",
-    show_default="the working folder",
-    help="The folder for NAME.rules; it is created if necessary.",
-)
-@click.option(
-    "--extends",
-    "base",
-    metavar="R",
-    help="The name of a rulebook to extend.",
-    shell_complete=complete_rulebooks,
-)
-def command(name: str, output: str, base: str | None) -> None:
+@verb
+def command(
+    *,
+    name: str = argument(),
+    output: str = option(
+        "-o",
+        "--output",
+        default=".",
+        metavar="DIR",
+        show_default="the working folder",
+        help="The folder for NAME.rules; it is created if necessary.",
+    ),
+    base: str | None = option(
+        "--extends",
+        metavar="R",
+        help="The name of a rulebook to extend.",
+        shell_complete=complete_rulebooks,
+    ),
+) -> None:
     """Create NAME.rules, a small valid rulebook with examples, as a starting point.
 
     An existing file is not overwritten.

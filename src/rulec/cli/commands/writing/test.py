@@ -15,7 +15,7 @@ from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, RenamedOption, endings_of, output_options
-from rulec.cli.options.verb_class import Verb
+from rulec.cli.options.verb_class import gathered, option, verb
 from rulec.cli.output import print_lost, put_answer, sources_of_rulebooks, width_of
 from rulec.cli.watching import watch as watch_sources
 from rulec.cli.watching import watch_option
@@ -26,50 +26,53 @@ from rulec.rulebook.allowances import without_allowed
 from rulec.settings import search_path
 
 
-@click.command(cls=Verb)
-@shared.rulebooks_argument("[RULEBOOK]...", required=False)
-@shared.rules_option(
-    "Run only examples whose RULE or RULE/LABEL matches PATTERN (RULE/NUMBER if it has no label)",
-    former=["--run"],
-)
-@output_options(endings_of("full", "json", "junit"), "the outcomes: text, JSON, or JUnit XML")
-@click.option("--fail-on-empty", is_flag=True, help="Fail if there are no examples to run.")
-@click.option(
-    "--coverage",
-    "with_coverage",
-    is_flag=True,
-    help="List the edges of each rule's automaton that no example takes, and the atoms that are "
-    "never both true and false in examples.",
-)
-@click.option(
-    "--fail-under",
-    "percent",
-    cls=RenamedOption,
-    former=["--threshold"],
-    type=click.FloatRange(0, 100),
-    callback=shared.finite,
-    metavar="PERCENT",
-    help="Fail if the examples cover less than this of a rulebook's own rules; implies --coverage.",
-)
-@click.option(
-    "-v", "--verbose", is_flag=True, help="List every example, and all that coverage misses."
-)
-@shared.jobs_option("Test N rulebooks in parallel")
-@watch_option
-@shared.at_option
-def command(
-    rulebooks: tuple[str, ...],
-    *,
-    patterns: tuple[str, ...],
-    to: Output,
-    fail_on_empty: bool,
-    with_coverage: bool,
-    percent: float | None,
-    verbose: bool,
-    jobs: Jobs,
-    watch: bool,
-    at: str,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class TestOptions:
+    """The examples to run, the day of law, and the reports wanted."""
+
+    rulebooks: tuple[str, ...] = shared.rulebooks_argument("[RULEBOOK]...", required=False)
+    patterns: tuple[str, ...] = shared.rules_option(
+        "Run only examples whose RULE or RULE/LABEL matches PATTERN (RULE/NUMBER if it has no "
+        "label)",
+        former=["--run"],
+    )
+    to: Output = output_options(
+        endings_of("full", "json", "junit"), "the outcomes: text, JSON, or JUnit XML"
+    )
+    fail_on_empty: bool = option(
+        "--fail-on-empty", is_flag=True, help="Fail if there are no examples to run."
+    )
+    with_coverage: bool = option(
+        "--coverage",
+        is_flag=True,
+        help="List the edges of each rule's automaton that no example takes, and the atoms that "
+        "are never both true and false in examples.",
+    )
+    percent: float | None = option(
+        "--fail-under",
+        cls=RenamedOption,
+        former=["--threshold"],
+        type=click.FloatRange(0, 100),
+        callback=shared.finite,
+        metavar="PERCENT",
+        help="Fail if the examples cover less than this of a rulebook's own rules; implies "
+        "--coverage.",
+    )
+    verbose: bool = option(
+        "-v", "--verbose", is_flag=True, help="List every example, and all that coverage misses."
+    )
+    jobs: Jobs = shared.jobs_option("Test N rulebooks in parallel")
+    watch: bool = watch_option
+    at: str = shared.at_option
+
+    @property
+    def measured(self) -> bool:
+        """Whether coverage is asked for."""
+        return self.with_coverage or self.percent is not None
+
+
+@verb
+def command(*, asked: TestOptions = gathered(TestOptions)) -> int:
     """Run the accept and reject examples of every RULEBOOK.
 
     RULEBOOK is a name, the path of a source, a pattern, or a folder with rulebooks at any depth;
@@ -78,46 +81,22 @@ def command(
     Exit status: 0 all examples pass, 1 some fail, or --fail-on-empty or --fail-under applies, 2 a
     rulebook could not be read or compiled, or --rule matches nothing.
     """
-    references = rulebooks or (".",)
-    measured = with_coverage or percent is not None
-
-    def run() -> int:
-        wanted = WantedExamples(
-            patterns, at, measured=measured, fails_empty=fail_on_empty, in_full=verbose
-        )
-        return _tested(references, wanted, percent, to, jobs)
-
-    if watch:
+    references = asked.rulebooks or (".",)
+    run = partial(_tested, references, asked)
+    if asked.watch:
         watch_sources(run, references)
     return run()
 
 
-@dataclass(frozen=True, slots=True)
-class WantedExamples:
-    """The examples to run, the day of law, and the reports wanted."""
-
-    patterns: tuple[str, ...]
-    at: str
-    measured: bool
-    fails_empty: bool
-    in_full: bool
-
-
-def _tested(
-    references: Sequence[str],
-    wanted: WantedExamples,
-    percent: float | None,
-    to: Output,
-    jobs: Jobs,
-) -> int:
-    begun = monotonic()
+def _tested(references: Sequence[str], asked: TestOptions) -> int:
+    begun, to, patterns = monotonic(), asked.to, asked.patterns
     rulebooks = sources_of_rulebooks(references, "has no examples")
     runs: list[lazy.ExampleRun] = []
     coverages: list[tuple[lazy.RuleCoverage, ...]] = []
     tested: list[str] = []
     unread: dict[str, Sequence[Diagnostic]] = {}
-    request = lazy.ExampleRequest(search_path(), wanted.at, wanted.patterns, wanted.measured)
-    answers = lazy.measured_runs(request, rulebooks, jobs, partial(print_lost, "tested"))
+    request = lazy.ExampleRequest(search_path(), asked.at, patterns, asked.measured)
+    answers = lazy.measured_runs(request, rulebooks, asked.jobs, partial(print_lost, "tested"))
     for name, answer in zip(rulebooks, answers, strict=True):
         if isinstance(answer, RulecError):
             print_diagnostics(answer.diagnostics)
@@ -130,16 +109,18 @@ def _tested(
         coverages.append(covers)
     runs = lazy.example_runs.with_distinct_names(runs, tested)
     answered = not unread
-    left_out = [*filter(None, (untested(run.rulebook, run.name, wanted.patterns) for run in runs))]
+    left_out = [*filter(None, (untested(run.rulebook, run.name, patterns) for run in runs))]
     if answered:
-        _refuse_unmatched(runs, wanted.patterns, left_out)
+        _refuse_unmatched(runs, patterns, left_out)
     for sentence in left_out:
         print_remark(f"rulec: {sentence}")
-    covered = coverages if wanted.measured else None
-    short = lazy.example_text.shortcomings(runs, covered, percent, fail_on_empty=wanted.fails_empty)
+    covered = coverages if asked.measured else None
+    short = lazy.example_text.shortcomings(
+        runs, covered, asked.percent, fail_on_empty=asked.fail_on_empty
+    )
     if runs or to.form != "full":
         besides = lazy.Besides(unread, short, monotonic() - begun)
-        width, in_full = width_of(to), wanted.in_full
+        width, in_full = width_of(to), asked.verbose
         match to.form:
             case "json":
                 text = lazy.example_formats.as_json(runs, covered)

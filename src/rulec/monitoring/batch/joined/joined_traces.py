@@ -11,6 +11,7 @@ import numpy as np
 
 from rulec.array_types import Flags, Indices
 from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.trace import Trace
 from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_arrays import BY_NAME, TraceArrays, by_name
@@ -87,9 +88,6 @@ class JoinedTraces:
         example = traces[0]
 
         def made(number: int) -> Trace:
-            # What judges states, 5 ms: only where arrays do not tell.
-            from rulec.monitoring.uncertainty.suppositions import spelled_out
-
             return with_derived_values(spelled_out(traces[number].trace(), vocabulary), vocabulary)
 
         return JoinedTraces(

@@ -49,7 +49,7 @@ def verdicts_of(
             yield drive.drive, drive.answer
 
 
-def judged_anew(
+def rescored(
     scores: list[CandidateScore],
     before: Sequence[Violation],
     rulebook: CompiledRulebook,
@@ -255,6 +255,31 @@ def _since(
     return answers_contained(traces, some.rulebook)
 
 
+_Asked = Mapping[tuple[int, RuleFor], int]
+"""By future and rule, the step from which on it is asked."""
+
+
+def _answers(
+    futures: Sequence[_Future], asked: _Asked, some: SomeRules, most: int | None = None
+) -> Iterator[tuple[tuple[int, RuleFor], Verdict | NotJudged]]:
+    """The answer to each question; ``most`` as in ``_since``."""
+    jobs = sorted({(n, step) for (n, _), step in asked.items()})
+    answers = _since([step for _, step in jobs], [futures[n] for n, _ in jobs], some, most)
+    answer_to = dict(zip(jobs, answers, strict=True))
+    for key, step in asked.items():
+        yield key, answer_to[key[0], step]
+
+
+def _about(
+    answer: Verdict | NotJudged, about: RuleFor
+) -> tuple[Violation | None, OpenVerdict | None]:
+    """What an answer says of a rule and objects: a violation, or that it is open."""
+    if not isinstance(answer, Verdict):
+        return None, None
+    violation = next((x for x in answer.violations if rule_for(x) == about), None)
+    return violation, next((x for x in answer.open if rule_for(x) == about), None)
+
+
 def _mended_after(
     futures: Sequence[_Future],
     known: Collection[RuleFor],
@@ -306,16 +331,9 @@ def _violated_again(
     ended: list[dict[RuleFor, int]] = [{} for _ in futures]
     asked = {(n, about): first for n in range(len(futures)) for about in known}
     while asked:
-        jobs = sorted({(n, step) for (n, _), step in asked.items()})
-        answers = _since([step for _, step in jobs], [futures[n] for n, _ in jobs], some)
-        violations = {
-            (*job, rule_for(one)): one
-            for job, answer in zip(jobs, answers, strict=True)
-            for one in (answer.violations if isinstance(answer, Verdict) else ())
-        }
         goes_on = {}
-        for (n, about), step in asked.items():
-            one = violations.get((n, step, about))
+        for (n, about), answer in _answers(futures, asked, some):
+            step, (one, _) = asked[n, about], _about(answer, about)
             if one is None or one.step is None:
                 ended[n][about] = step
                 continue
@@ -341,42 +359,20 @@ def _open_again(
     """
     found: list[dict[RuleFor, OpenVerdict]] = [{} for _ in futures]
     asked = {(n, about): step for n, own in enumerate(ended) for about, step in own.items()}
-    is_open = _open_from(futures, asked, some)
-    waiting = {key: asked[key] for key in is_open}
+    answers = _answers(futures, asked, some)
+    waiting = {key: asked[key] for key, answer in answers if _about(answer, key[1])[1]}
     surely = {}
     while waiting := {key: step for key, step in waiting.items() if step < begin}:
-        jobs = sorted({(n, step) for (n, _), step in waiting.items()})
-        answers = _since([step for _, step in jobs], [futures[n] for n, _ in jobs], some, most=1)
-        answer_to = dict(zip(jobs, answers, strict=True))
-        for key in list(waiting):
-            if _keeps(answer_to[key[0], waiting[key]], {key[1]}):
+        for key, answer in list(_answers(futures, waiting, some, most=1)):
+            if _keeps(answer, {key[1]}):
                 surely[key] = waiting.pop(key)
             else:
                 waiting[key] += 1
-    for (n, about), verdict in _open_from(futures, surely, some).items():
-        found[n][about] = verdict
+    for (n, about), answer in _answers(futures, surely, some):
+        _, verdict = _about(answer, about)
+        if verdict is not None:
+            found[n][about] = verdict
     return found
-
-
-def _open_from(
-    futures: Sequence[_Future],
-    asked: Mapping[tuple[int, RuleFor], int],
-    some: SomeRules,
-) -> dict[tuple[int, RuleFor], OpenVerdict]:
-    """What is open, by future and rule, if it is asked from a step on."""
-    jobs = sorted({(n, step) for (n, _), step in asked.items()})
-    answers = _since([step for _, step in jobs], [futures[n] for n, _ in jobs], some)
-    verdicts = {
-        (*job, rule_for(own)): own
-        for job, answer in zip(jobs, answers, strict=True)
-        if isinstance(answer, Verdict)
-        for own in answer.open
-    }
-    return {
-        (n, about): verdicts[n, step, about]
-        for (n, about), step in asked.items()
-        if (n, step, about) in verdicts
-    }
 
 
 def _least_states(rule: CompiledRule) -> int:
