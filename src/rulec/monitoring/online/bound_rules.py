@@ -18,12 +18,11 @@ from rulec.monitoring.bindings import Cast, in_usual_order
 from rulec.monitoring.implied_values import with_implied_signals
 from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
-from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.group_letters import GroupLetters
 from rulec.monitoring.online.partial_states import RulesOfAll, StateReader, rules_of_all
-from rulec.monitoring.online.prepared_rule import PreparedRule
+from rulec.monitoring.online.prepared_rule import PossibleClasses, PreparedRule
 from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups
-from rulec.monitoring.online.uncertain_steps import Edge
+from rulec.monitoring.online.rule_steps import Edge
 from rulec.monitoring.state_validation import check_state
 from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.possible_letters import BoundLetters, bound_letters
@@ -199,10 +198,10 @@ class BoundRules:
 
     def _careful_letters(self, reader: StateReader) -> Letters:
         """Letters read like ``verify`` does, in the same order, so that it finds the same error."""
-        read: list[list[tuple[LetterClass, bool]]] = [[] for _ in self._at]
+        read: list[list[PossibleClasses]] = [[] for _ in self._at]
         for own in self.rules:
             for at, items in enumerate(own.bindings, own.places.start):
-                read[at].append(reader.letter_class(own.prepared, items))
+                read[at].append(reader.classes(own.prepared, items))
         return [group.letter_read(own) for (group, _), own in zip(self._at, read, strict=True)]
 
     def _filled(
@@ -226,12 +225,12 @@ class BoundRules:
             self._of_all = rules_of_all(self._rulebook, self.objects)
         of_all, number = self._of_all, where[0]
 
-        def read(prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:
-            classes = of_all.letter_class(prepared, items, state)
+        def read(prepared: PreparedRule, items: Items) -> PossibleClasses:
+            classes = of_all.classes(prepared, items, state)
             if classes is None:
                 # Something is wrong.
                 reader = self._state_reader(state, (f"state {number}", where[1]))
-                classes = reader.letter_class(prepared, items)
+                classes = reader.classes(prepared, items)
             return classes
 
         for at, group, items in has_holes:

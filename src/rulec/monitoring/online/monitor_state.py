@@ -26,8 +26,8 @@ from rulec.monitoring.online.rule_group import (
     OtherVerdictError,
     RuleGroup,
 )
+from rulec.monitoring.online.rule_steps import Edge
 from rulec.monitoring.online.running_constants import NO_CONSTANTS, KnownConstants
-from rulec.monitoring.online.uncertain_steps import Edge
 from rulec.value_display import short_repr
 
 

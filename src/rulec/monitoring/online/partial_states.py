@@ -8,8 +8,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
 from rulec.monitoring.bindings import Binding
 from rulec.monitoring.online.encoding.state_shape import Items
-from rulec.monitoring.online.four_valued import LetterClass
-from rulec.monitoring.online.prepared_rule import PreparedRule
+from rulec.monitoring.online.prepared_rule import PossibleClasses, PreparedRule
 from rulec.monitoring.state_view import StateView, value_in
 from rulec.monitoring.uncertainty.lazy_bindings import ReadBits
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import MOST_COUNTED, NothingKnown
@@ -46,9 +45,7 @@ class RulesOfAll:
         self._everybody = NothingKnown(objects, rulebook.vocabulary)
         self._rules: dict[tuple[PreparedRule, Items], _RuleOfAll] = {}
 
-    def letter_class(
-        self, prepared: PreparedRule, items: Items, state: State
-    ) -> tuple[LetterClass, bool] | None:
+    def classes(self, prepared: PreparedRule, items: Items, state: State) -> PossibleClasses | None:
         """As in ``StateReader``; None if that one has to report what is wrong."""
         key = prepared, items
         rule = self._rules.get(key)
@@ -56,7 +53,7 @@ class RulesOfAll:
             rule = self._rules[key] = _RuleOfAll(
                 prepared, prepared.bound(items), self._everybody, self._rulebook, self._bound
             )
-        return rule.letter_class(state)
+        return rule.classes(state)
 
 
 def rules_of_all(rulebook: CompiledRulebook, objects: Mapping[str, str]) -> RulesOfAll:
@@ -83,9 +80,13 @@ class _RuleOfAll:
         rulebook: CompiledRulebook,
         bound: BoundLetters,
     ) -> None:
-        classes = prepared.uncertain.classes
         self._letters = letters_of_rule(
-            prepared.rule, classes, objects, rulebook, everybody=everybody, bound=bound
+            prepared.rule,
+            prepared.steps.classes,
+            objects,
+            rulebook,
+            everybody=everybody,
+            bound=bound,
         )
         self._prepared, self._objects, self._everybody = prepared, objects, everybody
         reads = self._letters.reads
@@ -95,13 +96,11 @@ class _RuleOfAll:
         self._entangled = entangled.subjects_of(objects) if entangled.numbers else []
         read = [x for own in self._alone for x in subjects_of_read(own.read, objects, everybody)]
         self._subjects: list[Subject] = list(dict.fromkeys([*self._entangled, *read]))
-        # Most reads depend on a single value.
-        self._places = [self._place_of(read) for read in self._alone]
         declarations = everybody.vocabulary.declarations
         self._asked = [(name, items, declarations[name]) for name, items in self._subjects]
-        self._known: dict[tuple[PartialValue | None, ...], tuple[LetterClass, bool]] = {}
+        self._known: dict[tuple[PartialValue | None, ...], PossibleClasses] = {}
 
-    def letter_class(self, state: State) -> tuple[LetterClass, bool] | None:
+    def classes(self, state: State) -> PossibleClasses | None:
         """The classes that the rule may read, and whether this is exact."""
         values = tuple([value_in(state, *asked) for asked in self._asked])
         known = self._known.get(values)
@@ -116,43 +115,21 @@ class _RuleOfAll:
 
     def _read_classes(
         self, state: State, values: tuple[PartialValue | None, ...]
-    ) -> tuple[LetterClass, bool] | None:
+    ) -> PossibleClasses | None:
         entangled = self._letters.entangled
         view = StateView(state, self._everybody.objects, self._everybody.vocabulary)
-        is_exact = True
+        there = None if entangled.is_local else self._everybody.objects
         try:
-            key = [
-                self._digits(read, view) if place is None else read.of_values([values[place]])[0]
-                for read, place in zip(self._alone, self._places, strict=True)
-            ]
-            if 0 in key:
-                return None
-            if entangled.numbers:
-                there = None if entangled.is_local else self._everybody.objects
-                number = entangled.number(values[: len(self._entangled)], there)
-                is_exact = entangled.joint_letters[number][1]
-                key.append(number)
-            is_exact = is_exact and not any(
-                self._has_unknown_constant(own, view) for own in self._constants
-            )
+            digits = tuple([read.in_state(self._objects, view) for read in self._alone])
+            about = values[: len(self._entangled)]
+            classes, is_exact = self._letters.possible(digits, about, there)
+            varies = any(self._has_unknown_constant(own, view) for own in self._constants)
         except MissingValueError:
             return None
-        steps = self._prepared.uncertain
-        letter_class = steps.letter_class(self._letters.classes_of(tuple(key)))
-        return None if letter_class is None else (letter_class, is_exact)
-
-    def _place_of(self, read: ReadDigits) -> int | None:
-        if read.subject is None:
-            return None
-        name, variables = read.subject
-        items = tuple([self._objects[variable] for variable in variables])
-        return self._subjects.index((name, items))
-
-    def _digits(self, read: ReadDigits, view: StateView) -> int:
-        return read.in_state(self._objects, view)
+        return (classes, is_exact and not varies) if classes else None
 
     def _has_unknown_constant(self, read: ReadDigits, view: StateView) -> bool:
-        digits = self._digits(read, view)
+        digits = read.in_state(self._objects, view)
         if digits & (digits - 1) == 0:
             return False
         unknown = unknown_in_read(read.read, self._objects, view)
@@ -188,18 +165,17 @@ class StateReader:
         """A reader of the digits, as bits, of a rule's single reads."""
         return self._reader.bits_of(prepared.rule)
 
-    def letter_class(self, prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:
-        """The classes that a rule may read for some objects, and whether this is exact.
+    def classes(self, prepared: PreparedRule, items: Items) -> PossibleClasses:
+        """The classes that a rule may read for some objects, and whether each is possible.
 
         Raises RulecError R0504 if a value without default is missing, R0508 if the state is
         impossible.
         """
         bound = prepared.bound(items)
-        classes = prepared.uncertain.classes
-        word = self._reader.word(prepared.rule, classes, Binding(bound, 0, 0))
-        letter_class = prepared.uncertain.letter_class(word.classes[0])
-        if letter_class is None:
+        word = self._reader.word(prepared.rule, prepared.steps.classes, Binding(bound, 0, 0))
+        (classes,) = word.classes
+        if not classes:
             raise self._reader.impossible(prepared.rule, bound, 0)
         constants = prepared.constants
         is_constant = bool(constants) and any(constants & names for names in word.unknown)
-        return letter_class, word.exact and not is_constant
+        return classes, word.exact and not is_constant

@@ -13,6 +13,7 @@ from rulec.automata.outcome_machine import OutcomeMachine, bits_of
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
 from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters, read_digits
+from rulec.vocabulary.partial_values import PartialValue
 
 MOST_KEPT = 1 << 16
 """How many letters keep their classes before all are discarded."""
@@ -136,6 +137,22 @@ class RuleLetters:
             known = self._classes.of(self.letters(key))
             _keep(self._known, key, known)
         return known
+
+    def possible(
+        self,
+        digits: tuple[int, ...],
+        values: tuple[PartialValue | None, ...],
+        there: Mapping[str, str] | None = None,
+    ) -> tuple[int, bool]:
+        """The classes, as bits, of letters, and whether each of these is possible.
+
+        ``digits`` are those of independent reads, ``values`` those of what entangled ones depend
+        on; see ``EntangledReads.number``. Raises MissingValueError.
+        """
+        if not self.entangled.numbers:
+            return self.classes_of(digits), True
+        place = self.entangled.number(values, there)
+        return self.classes_of((*digits, place)), self.entangled.joint_letters[place][1]
 
     def letters(self, key: tuple[int, ...]) -> Letters:
         """The letters with a key."""

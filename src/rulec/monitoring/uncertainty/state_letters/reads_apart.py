@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import product
 from math import prod
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
@@ -66,13 +66,6 @@ class _Part(NamedTuple):
     table: _PartTable
 
 
-PartNumber: TypeAlias = "tuple[Callable[[Any], tuple[Any, ...]], Callable[[tuple[Any, ...]], int]]"
-"""A getter of a part's values among all, and a function that gives their number.
-
-Raises MissingValueError.
-"""
-
-
 class KnownParts:
     """The cached ``tables`` of the parts of all rules."""
 
@@ -84,8 +77,7 @@ class ReadsApart:
     """The reads of one rule that depend on these ``subjects``, in parts.
 
     They are evaluated for the objects of a ``binding``, with ``everybody`` present. Parts that
-    differ only in the names of objects share their ``known`` results. ``numbers`` has for each part
-    a getter of its subjects' values, and a function that gives their number in a ``key``.
+    differ only in the names of objects share their ``known`` results.
 
     ``counts_divided``: what decides whether an object counts is a part of its own, and the values
     of the world in such counts are supposed, one choice after the other; they must be words.
@@ -114,7 +106,6 @@ class ReadsApart:
             if subject in world and not subject[1]
         }
         self._parts = tuple(self._apart(pieces, list(instances_of(axioms, everybody))))
-        self.numbers = tuple([(part.values, part.table.number) for part in self._parts])
         self._letters: dict[tuple[tuple[int, ...], bool], tuple[Letters, bool]] = {}
 
     def key(self, values: Sequence[PartialValue | None]) -> tuple[int, ...]:
@@ -122,7 +113,7 @@ class ReadsApart:
 
         Raises MissingValueError, not necessarily about the first missing value.
         """
-        return tuple([number(pick(values)) for pick, number in self.numbers])
+        return tuple([part.table.number(part.values(values)) for part in self._parts])
 
     def letters(self, key: tuple[int, ...], *, supposed: bool = False) -> tuple[Letters, bool]:
         """The joint letters of a key, and whether each of them is possible.
