@@ -28,8 +28,7 @@ from rulec.monitoring.explain.explained_parts import (
 from rulec.monitoring.explain.explained_states import shown_states, states_to_explain
 from rulec.monitoring.explain.margins import Margin, choosing_comparisons
 from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
-from rulec.monitoring.explain.observed_states import ObservedStates
-from rulec.monitoring.explain.observed_word import ObservedWord
+from rulec.monitoring.explain.observed_states import ObservedStates, ObservedWord
 from rulec.monitoring.explain.turning_margins import turning
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.state_validation import has_partial_values

@@ -17,12 +17,19 @@ from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.state_view import StateView, value_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
+from rulec.remembered import Remembered
 from rulec.trace import State
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN
 
 MOST = 1 << 12
 """How many states of the world, and letters of each group, are kept before all are discarded."""
+
+_LetterTable: TypeAlias = Remembered[Any, int]
+"""The letters of a group by the encoded values of its sources that are about variables.
+
+The key is the encoded value of a single source, or a tuple for several.
+"""
 
 _ReadColumn: TypeAlias = Callable[[State, Sequence[Encoded]], Sequence[Any]]
 """Maps a state and its parts to the encoded values of an input, for each of several bindings."""
@@ -51,7 +58,9 @@ class GroupLetters:
                 values = frozenset([*declaration.values, encoded_values.MISSING, UNKNOWN])
                 self._unread.append((part, slice(place, place + 1), values))
         self._keys = [reader.keys for reader in self._readers]
-        self._by_world: dict[tuple[Encoded, ...], list[_LetterTable]] = {}
+        self._by_world: Remembered[tuple[Encoded, ...], list[_LetterTable]] = Remembered(
+            lambda world: [reader.in_world(world) for reader in self._readers], MOST
+        )
 
     def letters(self, state: State, parts: tuple[Encoded, ...]) -> list[int]:
         """The letter of each binding of each group, one after the other.
@@ -63,42 +72,9 @@ class GroupLetters:
                 raise LookupError
         world = parts[: self.shape.n_world]
         letters: list[int] = []
-        tables = self._by_world.get(world) or self._in_world(world)
-        for keys, known in zip(self._keys, tables, strict=True):
+        for keys, known in zip(self._keys, self._by_world[world], strict=True):
             letters += map(known.__getitem__, keys(state, parts))
         return letters
-
-    def _in_world(self, world: tuple[Encoded, ...]) -> list[_LetterTable]:
-        in_world = self._by_world.get(world)
-        if in_world is None:
-            if len(self._by_world) >= MOST:
-                self._by_world.clear()
-            in_world = [reader.in_world(world) for reader in self._readers]
-            self._by_world[world] = in_world
-        return in_world
-
-
-class _LetterTable(dict[Any, int]):
-    """The letters of a group by the encoded values of its own sources.
-
-    The key is the encoded value of a single source, or a tuple for several. ``given`` has the
-    values of all sources, with gaps at the places of the ``own`` ones.
-    """
-
-    __slots__ = ("_given", "_group", "_own")
-
-    def __init__(self, group: RuleGroup, own: Sequence[int], given: Sequence[Any]) -> None:
-        self._group, self._own, self._given = group, own, given
-
-    def __missing__(self, key: Any) -> int:
-        own, values = self._own, list(self._given)
-        for place, value in zip(own, (key,) if len(own) == 1 else key, strict=True):
-            values[place] = value
-        letter = self._group.letter_read(self._group.reads.classes(values))
-        if len(self) >= MOST:
-            self.clear()
-        self[key] = letter
-        return letter
 
 
 class _GroupReader:
@@ -141,10 +117,17 @@ class _GroupReader:
 
     def in_world(self, world: Sequence[Encoded]) -> _LetterTable:
         """The letters of all bindings, for one world state."""
-        given = list(self._given)
+        group, own, given = self._group, self._own, list(self._given)
         for number, part, place in self._world:
             given[number] = world[part][place]
-        return _LetterTable(self._group, self._own, given)
+
+        def letter(key: Any) -> int:
+            values = list(given)
+            for place, value in zip(own, (key,) if len(own) == 1 else key, strict=True):
+                values[place] = value
+            return group.letter_read(group.reads.classes(values))
+
+        return Remembered(letter, MOST)
 
     def _read_keys(self, whole: Sequence[int | None]) -> _ReadKeys:
         columns, n_bindings = self._columns, self.n_bindings

@@ -10,10 +10,11 @@ from rulec.monitoring.online.encoding.encoded_values import (
     MISSING,
     UNKNOWN_DIGIT,
     Breakpoints,
-    DigitTable,
+    digit_table,
 )
 from rulec.monitoring.online.prepared_rule import PossibleClasses, PreparedRule
 from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
+from rulec.remembered import Remembered
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN
 
@@ -35,7 +36,7 @@ class GroupReads:
             for place, own in enumerate(declared)
             if isinstance(own, Enumeration)
         ]
-        self._tables: list[tuple[int, DigitTable]] = []
+        self._tables: list[tuple[int, Remembered[Any, int]]] = []
         self._picks = []
         at: dict[object, int] = {source: place for place, source in enumerate(self.sources)}
         for rule in rules:
@@ -44,7 +45,7 @@ class GroupReads:
                 key = source if source.name is None else (read.kind, source)
                 if key not in at:
                     at[key] = len(at)
-                    table = DigitTable(read, breakpoints.get(source.name or ""))
+                    table = digit_table(read, breakpoints.get(source.name or ""))
                     self._tables.append((at[source], table))
                 places.append(at[key])
             self._picks.append(values_at([*places, *[at[source] for source in rule.values]]))

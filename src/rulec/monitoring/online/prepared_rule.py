@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple, TypeAlias
 
@@ -21,10 +21,8 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import (
     read_digits,
 )
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError, Subject
+from rulec.remembered import Remembered
 from rulec.vocabulary import Vocabulary
-
-MOST_CLASSES = 1 << 12
-"""How many classes of a rule's letters are kept before all are discarded."""
 
 BY_STATE: ClassSet = -1
 """Replaces the classes of a rule's letters that depend on the whole state."""
@@ -61,7 +59,6 @@ class PreparedRule:
     vocabulary: Vocabulary
     axioms: tuple[CompiledAxiom, ...]
     is_cut: bool = False
-    _known: dict[tuple[Any, ...], PossibleClasses] = field(default_factory=dict)
 
     @property
     def start(self) -> Edge:
@@ -105,16 +102,14 @@ class PreparedRule:
         ``read`` are the digits, as bits, of the reads that are ``alone``, then the encoded
         ``values``. Raises LookupError if a value is missing, or if axioms exclude all letters.
         """
-        known = self._known.get(read)
-        if known is None:
-            n_alone = len(self.alone)
-            known = self._classes_of(read[:n_alone], read[n_alone:])
-            if len(self._known) >= MOST_CLASSES:
-                self._known.clear()
-            self._known[read] = known
-        return known
+        return self._known[read]
 
-    def _classes_of(self, digits: tuple[int, ...], values: tuple[Any, ...]) -> PossibleClasses:
+    @cached_property
+    def _known(self) -> Remembered[tuple[Any, ...], PossibleClasses]:
+        return Remembered(self._classes_of)
+
+    def _classes_of(self, read: tuple[Any, ...]) -> PossibleClasses:
+        digits, values = read[: len(self.alone)], read[len(self.alone) :]
         several = [n for n, own in enumerate(digits) if own & (own - 1)]
         if self.entangled is None:
             if not self._perhaps_entangled.isdisjoint(several):

@@ -71,19 +71,13 @@ class CacheSize:
     has_holes = False
 
 
-class Holes(NamedTuple):
-    """The numbers of a letter's rules that read the whole state, and of those that are inexact."""
-
-    rules: tuple[int, ...]
-    inexact: frozenset[int]
-
-
 class RuleGroup:
     """Rules whose variables have the same types, in the same order, with what they read.
 
     ``classes`` are those of each letter, one set per rule; ``cache_size`` counts for all groups
     together. For ``inexact`` letters the names of rules are kept whose classes are overestimated;
-    letters with ``holes`` must be ``filled`` before they are read.
+    letters with ``holes``, which have the numbers of such rules, must be ``filled`` before they are
+    read.
     """
 
     def __init__(self, reads: GroupReads, cache_size: CacheSize) -> None:
@@ -91,7 +85,7 @@ class RuleGroup:
         self.rules, self.types = reads.rules, reads.types
         self.classes: list[tuple[ClassSet, ...]] = []
         self.inexact: dict[int, frozenset[str]] = {}
-        self.holes: dict[int, Holes] = {}
+        self.holes: dict[int, frozenset[int]] = {}
         self._letters: dict[tuple[object, ...], int] = {}
         self._nodes: dict[tuple[Edge, ...], GroupNode] = {}
 
@@ -116,8 +110,7 @@ class RuleGroup:
             self.cache_size.n += 1
             if BY_STATE in classes:
                 self.cache_size.has_holes = True
-                own = tuple([n for n, known in enumerate(classes) if known == BY_STATE])
-                self.holes[letter] = Holes(own, frozenset(inexact))
+                self.holes[letter] = frozenset(inexact)
             elif inexact:
                 self.cache_size.is_inexact = True
                 self.inexact[letter] = frozenset(self.rules[number].name for number in inexact)
@@ -130,13 +123,13 @@ class RuleGroup:
         read: Callable[[PreparedRule, Items], PossibleClasses],
     ) -> int:
         """The letter whose ``holes`` are filled with what those rules read of the objects."""
-        holes = self.holes[letter]
-        classes, inexact = list(self.classes[letter]), set(holes.inexact)
-        for number in holes.rules:
-            classes[number], is_exact = read(self.rules[number], items)
-            if not is_exact:
-                inexact.add(number)
-        return self.letter(tuple(classes), inexact)
+        inexact, classes = self.holes[letter], self.classes[letter]
+        return self.letter_read(
+            [
+                read(rule, items) if own == BY_STATE else (own, number not in inexact)
+                for number, (rule, own) in enumerate(zip(self.rules, classes, strict=True))
+            ]
+        )
 
     def letter_read(self, read: Sequence[PossibleClasses]) -> int:
         """The letter with the classes that each rule reads, given with whether this is exact."""

@@ -16,6 +16,7 @@ from rulec.automata.thresholds import EXACT_IN_FLOATS, scale
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import NUMBERS
 from rulec.monitoring.uncertainty.state_letters.read_digits import ReadDigits
+from rulec.remembered import Remembered
 from rulec.vocabulary import Declaration, Quantity, Signal
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 
@@ -42,9 +43,6 @@ UNKNOWN_DIGIT: Final = object()
 Digits are kept as dictionary keys. The garbage collector would track keys that contain ``UNKNOWN``,
 a member of an enumeration; it does not track a plain object.
 """
-
-MOST_VALUES = 1 << 12
-"""How many values of a read keep their digits before all are discarded."""
 
 PARTIAL_DIGITS = frozenset({object, Interval, range})
 """The types of digits that are not known: of ``UNKNOWN_DIGIT``, and of bounds.
@@ -182,20 +180,16 @@ def decoded(encoded: Any, floors: Sequence[float] | None) -> PartialValue | None
     return value
 
 
-class DigitTable(dict[Any, int]):
+def digit_table(read: ReadDigits, floors: Sequence[float] | None) -> Remembered[Any, int]:
     """The digits, as bits, that a read of a single value may have, by the encoded value.
 
     Raises LookupError if the value is missing.
     """
 
-    def __init__(self, read: ReadDigits, floors: Sequence[float] | None) -> None:
-        self._read, self._floors = read, floors
-
-    def __missing__(self, encoded: Any) -> int:
-        (digits,) = self._read.of_values([decoded(encoded, self._floors)])
+    def digits(encoded: Any) -> int:
+        (digits,) = read.of_values([decoded(encoded, floors)])
         if not digits:
             raise LookupError
-        if len(self) >= MOST_VALUES:
-            self.clear()
-        self[encoded] = digits
         return digits
+
+    return Remembered(digits)

@@ -28,7 +28,6 @@ from rulec.monitoring.uncertainty.state_letters.completions.completions import (
 )
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import (
-    MOST_KNOWN,
     JointValues,
     values_at,
 )
@@ -41,6 +40,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_in,
     subjects_of_read,
 )
+from rulec.remembered import Remembered
 from rulec.valuations.connections import connected
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, OneOf, PartialValue
@@ -106,32 +106,29 @@ class ReadsApart:
             if subject in world and not subject[1]
         }
         self._parts = tuple(self._apart(pieces, list(instances_of(axioms, everybody))))
-        self._letters: dict[tuple[tuple[int, ...], bool], tuple[Letters, bool]] = {}
+        self._letters = Remembered(self._joint_letters)
 
     def key(self, values: Sequence[PartialValue | None]) -> tuple[int, ...]:
         """The key of the letters for these values of the subjects.
 
         Raises MissingValueError, not necessarily about the first missing value.
         """
-        return tuple([part.table.number(part.values(values)) for part in self._parts])
+        return tuple([part.table.numbers[part.values(values)] for part in self._parts])
 
     def letters(self, key: tuple[int, ...], *, supposed: bool = False) -> tuple[Letters, bool]:
         """The joint letters of a key, and whether each of them is possible.
 
         Unless values are ``supposed``, a state whose reads are all known is taken to be possible.
         """
-        known = self._letters.get((key, supposed))
-        if known is None:
-            if len(self._letters) >= MOST_KNOWN:
-                self._letters.clear()
-            parts = [part.table.possible[n] for part, n in zip(self._parts, key, strict=True)]
-            sure = [[own.known] for own in parts if own.known is not None]
-            if supposed or len(sure) < len(parts):
-                known = self._joint([own.joint for own in parts]), all(own.exact for own in parts)
-            else:
-                known = self._joint(sure), True
-            self._letters[key, supposed] = known
-        return known
+        return self._letters[key, supposed]
+
+    def _joint_letters(self, about: tuple[tuple[int, ...], bool]) -> tuple[Letters, bool]:
+        key, supposed = about
+        parts = [part.table.possible[n] for part, n in zip(self._parts, key, strict=True)]
+        sure = [[own.known] for own in parts if own.known is not None]
+        if supposed or len(sure) < len(parts):
+            return self._joint([own.joint for own in parts]), all(own.exact for own in parts)
+        return self._joint(sure), True
 
     def letters_of(self, values: Sequence[PartialValue | None]) -> tuple[Letters, bool]:
         """The joint letters for these values of the subjects, and whether each is possible.
@@ -284,19 +281,15 @@ class _PartTable:
         self._objects, self._vocabulary = objects, vocabulary
         self.possible: list[_PartDigits] = []
         self._numbers: dict[_PartDigits, int] = {}
-        self._known: dict[tuple[object, ...], int] = {}
+        self.numbers = Remembered(self._number)
+        """The places among ``possible`` by values. Raises MissingValueError."""
 
-    def number(self, values: tuple[PartialValue | None, ...]) -> int:
-        """The place among ``possible`` of the digits for these values. Raises MissingValueError."""
-        known = self._known.get(values)
-        if known is None:
-            if len(self._known) >= MOST_KNOWN:
-                self._known.clear()
-            possible = self._possible(values)
-            known = self._known[values] = self._numbers.setdefault(possible, len(self.possible))
-            if known == len(self.possible):
-                self.possible.append(possible)
-        return known
+    def _number(self, values: tuple[PartialValue | None, ...]) -> int:
+        possible = self._possible(values)
+        number = self._numbers.setdefault(possible, len(self.possible))
+        if number == len(self.possible):
+            self.possible.append(possible)
+        return number
 
     @cached_property
     def _joint_values(self) -> JointValues | None:
