@@ -16,7 +16,7 @@ from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.uncertainty.known_words import run
-from rulec.remembered import Remembered
+from rulec.trace.remembered import Remembered
 from rulec.witnesses.state_synthesis import are_consistent
 
 Letter = tuple[int, ...]

@@ -30,10 +30,10 @@ from rulec.monitoring.uncertainty.state_letters.possible_letters import (
     PossibleLetters,
     bound_letters,
 )
-from rulec.remembered import Remembered
 from rulec.resource_limits import CHOICES
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import State, Trace
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary.vocabulary_model import choices
 
 Awake: TypeAlias = Mapping[tuple[str, ...], Collection[Items]]

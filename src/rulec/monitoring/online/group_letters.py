@@ -12,13 +12,13 @@ from typing import Any, TypeAlias
 from rulec.monitoring.online.encoding import encoded_values
 from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
-from rulec.monitoring.online.prepared_rule import Source
+from rulec.monitoring.online.prepared_rule import ReadSource
 from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.state_view import StateView, value_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
-from rulec.remembered import Remembered
 from rulec.trace import State
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN
 
@@ -155,7 +155,7 @@ def _values_column(places: Sequence[tuple[int, int]]) -> _ReadColumn:
     return lambda _, parts: pick(parts[part])
 
 
-def _sum_column(source: Source, about: Sequence[Items], shape: StateShape) -> _ReadColumn:
+def _sum_column(source: ReadSource, about: Sequence[Items], shape: StateShape) -> _ReadColumn:
     ready = source.sum
     assert ready is not None, "it has no name"
     bindings = [dict(zip(ready.variables, items, strict=True)) for items in about]

@@ -14,7 +14,7 @@ from rulec.monitoring.online.encoding.encoded_values import (
 )
 from rulec.monitoring.online.prepared_rule import PossibleClasses, PreparedRule
 from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
-from rulec.remembered import Remembered
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN
 

@@ -24,8 +24,8 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_of_read,
     unknown_in_read,
 )
-from rulec.remembered import Remembered
 from rulec.trace import State
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary.partial_values import PartialValue
 
 MOST_KNOWN = 1 << 12

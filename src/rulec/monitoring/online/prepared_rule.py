@@ -21,7 +21,7 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import (
     read_digits,
 )
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError, Subject
-from rulec.remembered import Remembered
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary import Vocabulary
 
 BY_STATE: ClassSet = -1
@@ -31,7 +31,7 @@ PossibleClasses: TypeAlias = tuple[ClassSet, bool]
 """The classes that a rule may read, and whether each is possible."""
 
 
-class Source(NamedTuple):
+class ReadSource(NamedTuple):
     """A value that rules read, of objects given by the places of variables.
 
     It is that of ``name`` or, if this is None, a ``sum`` or count, whose value are its digits.
@@ -54,8 +54,8 @@ class PreparedRule:
     rule: CompiledRule
     steps: RuleSteps
     entangled: EntangledReads | None
-    alone: tuple[tuple[ReadDigits, Source], ...]
-    values: tuple[Source, ...]
+    alone: tuple[tuple[ReadDigits, ReadSource], ...]
+    values: tuple[ReadSource, ...]
     vocabulary: Vocabulary
     axioms: tuple[CompiledAxiom, ...]
     is_cut: bool = False
@@ -82,7 +82,7 @@ class PreparedRule:
         return self.rule.name
 
     @property
-    def sources(self) -> tuple[Source, ...]:
+    def sources(self) -> tuple[ReadSource, ...]:
         """All that it reads."""
         return (*[source for _, source in self.alone], *self.values)
 
@@ -178,11 +178,11 @@ def _prepared_rule(
     )
 
 
-def _source(read: ReadDigits, places: Mapping[str, int]) -> Source:
+def _source(read: ReadDigits, places: Mapping[str, int]) -> ReadSource:
     if read.subject is not None:
         return _source_of(read.subject, places)
-    return Source(None, tuple([places[variable] for variable in read.variables]), read)
+    return ReadSource(None, tuple([places[variable] for variable in read.variables]), read)
 
 
-def _source_of(subject: Subject, places: Mapping[str, int]) -> Source:
-    return Source(subject[0], tuple([places[variable] for variable in subject[1]]))
+def _source_of(subject: Subject, places: Mapping[str, int]) -> ReadSource:
+    return ReadSource(subject[0], tuple([places[variable] for variable in subject[1]]))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from rulec.automata.outcome_machine import KEPT, SetMonitor
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
-from rulec.remembered import Remembered
+from rulec.trace.remembered import Remembered
 
 
 class IdleLetters:

@@ -26,8 +26,8 @@ from rulec.monitoring.bindings import (
 )
 from rulec.monitoring.uncertainty.idle_letters import IdleLetters
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
-from rulec.remembered import Remembered
 from rulec.resource_limits import CHOICES
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary.vocabulary_model import choices, fitting_objects
 
 ReadBits: TypeAlias = Callable[[Read | NumberRead, Mapping[str, str], tuple[int, int]], list[int]]

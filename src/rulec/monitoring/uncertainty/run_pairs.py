@@ -11,7 +11,7 @@ from typing import TypeAlias
 from rulec.automata.outcome_machine import OutcomeMachine, bits_of
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
-from rulec.remembered import Remembered
+from rulec.trace.remembered import Remembered
 
 MOST_REMEMBERED = 1 << 14
 """How many steps are kept before all are discarded."""

@@ -29,7 +29,7 @@ from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClas
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 from rulec.monitoring.uncertainty.untold_names import RequiredNames
 from rulec.monitoring.verdict import ConditionalOutcome, OpenReasons, OutcomeName, Reason
-from rulec.remembered import Remembered
+from rulec.trace.remembered import Remembered
 
 MOST_OUTCOMES = 1 << 4
 """For so many combinations of values the outcome of an open verdict is listed."""

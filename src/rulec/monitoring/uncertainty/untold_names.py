@@ -17,7 +17,7 @@ from rulec.automata.outcome_machine import VIOLATED, OutcomeMachine, bits_of
 from rulec.monitoring.implied_values import words_meant
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
-from rulec.remembered import Remembered
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 

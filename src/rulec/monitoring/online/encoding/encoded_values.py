@@ -16,7 +16,7 @@ from rulec.automata.thresholds import EXACT_IN_FLOATS, scale
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import NUMBERS
 from rulec.monitoring.uncertainty.state_letters.read_digits import ReadDigits
-from rulec.remembered import Remembered
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary import Declaration, Quantity, Signal
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 

@@ -13,7 +13,7 @@ from rulec.automata.outcome_machine import OutcomeMachine, bits_of
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
 from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters, read_digits
-from rulec.remembered import Remembered
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary.partial_values import PartialValue
 
 MOST_KEPT = 1 << 16

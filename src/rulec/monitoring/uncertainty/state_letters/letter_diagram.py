@@ -14,7 +14,7 @@ from itertools import chain, count
 from math import prod
 
 from rulec.automata.outcome_machine import OutcomeMachine, bits_of
-from rulec.remembered import Remembered
+from rulec.trace.remembered import Remembered
 
 MOST_STEPS = 1 << 18
 """How many steps of one letter are kept before all are discarded."""

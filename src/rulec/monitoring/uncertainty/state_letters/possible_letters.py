@@ -35,9 +35,9 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     Subject,
     unknown_in_read,
 )
-from rulec.remembered import Remembered
 from rulec.trace import Trace, Value
 from rulec.trace.interned import Interned
+from rulec.trace.remembered import Remembered
 from rulec.trace.trace_model import present_in
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue

@@ -40,7 +40,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_in,
     subjects_of_read,
 )
-from rulec.remembered import Remembered
+from rulec.trace.remembered import Remembered
 from rulec.valuations.connections import connected
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, OneOf, PartialValue
