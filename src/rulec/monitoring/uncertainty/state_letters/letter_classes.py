@@ -9,10 +9,10 @@ from itertools import product
 from operator import or_
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.outcome_machine import OutcomeMachine, bits_of
+from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
-from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters, read_digits
+from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, read_digits
 from rulec.trace.remembered import Remembered
 from rulec.vocabulary.partial_values import PartialValue
 
@@ -26,7 +26,6 @@ class LetterClasses:
     def __init__(self, machine: OutcomeMachine) -> None:
         self._machine = machine
         self._known = Remembered(self._classes, MOST_KEPT)
-        self._groups = Remembered(self._grouped, MOST_KEPT)
         self._rules: dict[str, RuleLetters] = {}
 
     @cached_property
@@ -52,26 +51,13 @@ class LetterClasses:
         self, left: Letters, right: Letters, fixed: tuple[int, ...]
     ) -> frozenset[tuple[int, int]]:
         """The classes of two letters for each choice of digits of the ``fixed`` reads in both."""
-        if len(left) == len(right) == 1:
-            both = self.diagram.nodes_side_by_side(left[0], right[0], frozenset(fixed))
-            return frozenset([(x >> 1, y >> 1) for x, y in both if x > 1 and y > 1])
-        first, second = self.groups(left, fixed), self.groups(right, fixed)
-        return frozenset([(first[part], second[part]) for part in first.keys() & second])
-
-    def groups(self, letters: Letters, fixed: tuple[int, ...]) -> Mapping[Cube, int]:
-        """The classes of letters by the digits, as bits, of the ``fixed`` reads."""
-        return self._groups[letters, fixed]
-
-    def _grouped(self, key: tuple[Letters, tuple[int, ...]]) -> Mapping[Cube, int]:
-        letters, fixed = key
-        groups: dict[Cube, int] = {}
-        for cube in letters:
-            singles = [[1 << bit for bit in bits_of(cube[place])] for place in fixed]
-            for part in product(*singles):
-                chosen = dict(zip(fixed, part, strict=True))
-                narrowed = [chosen.get(n, mask) for n, mask in enumerate(cube)]
-                groups[part] = groups.get(part, 0) | self.diagram.classes(narrowed)
-        return {part: classes for part, classes in groups.items() if classes}
+        same = frozenset(fixed)
+        both = {
+            nodes
+            for first, second in product(left, right)
+            for nodes in self.diagram.nodes_side_by_side(first, second, same)
+        }
+        return frozenset([(x >> 1, y >> 1) for x, y in both if x > 1 and y > 1])
 
 
 @dataclass
