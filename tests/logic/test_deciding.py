@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from rulec.logic.causes import instants_among
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator, atoms_of
 from rulec.logic.semantics import holds
-from rulec.monitoring.explain.observed_word import ObservedWord, bits_of
+from rulec.monitoring.explain.observed_states import ObservedWord, bits_of
 from support.generators.random_formulas import formulas, letters, words
 from support.generators.timed_formulas import letters_of, timed_formulas, timed_words
 

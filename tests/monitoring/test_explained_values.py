@@ -10,7 +10,7 @@ from rulec.logic.formula import atoms_of
 from rulec.logic.semantics import holds, truth_values
 from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.explain.explanation import explain
-from rulec.monitoring.explain.observed_word import ObservedWord, bits_of
+from rulec.monitoring.explain.observed_states import ObservedWord, bits_of
 from rulec.trace import Trace
 from rulec.trace.trace_arrays import stretches_of
 from rulec.vocabulary.partial_values import UNKNOWN, Interval

@@ -12,9 +12,8 @@ from rulec.automata.compiler import compile_rulebook
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
 from rulec.logic.semantics import truth_values
 from rulec.monitoring.batch.verify import verify
-from rulec.monitoring.explain import explained_states
-from rulec.monitoring.explain.explained_states import states_to_explain
-from rulec.monitoring.explain.explanation import explain
+from rulec.monitoring.explain import explanation
+from rulec.monitoring.explain.explanation import explain, states_to_explain
 from rulec.monitoring.limits import LIMITS, MonitoringLimits
 from rulec.monitoring.uncertainty.known_words import KnownLetters
 from rulec.report.json_document import as_builtins
@@ -77,7 +76,7 @@ def test_the_states_of_a_window_violate_the_rule_like_all(formula, word):
     violations = verify(trace, rules).violations
     assume(violations)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(explained_states, "LIMITS", MonitoringLimits(states_explained=1))
+        patch.setattr(explanation, "LIMITS", MonitoringLimits(states_explained=1))
         explained = explain(violations[0], trace, rules)
         machine, decisive = rules.rules[0].machine, explained.decisive
         letters_of = KnownLetters(trace, rules)

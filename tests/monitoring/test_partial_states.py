@@ -266,12 +266,12 @@ def test_a_duty_of_many_steps_is_found_to_be_one_that_q_alone_violates(monkeypat
     compiled = rulec.compile_rulebook(parsed, step_s=Fraction(1, 100))
     steps = []
 
-    def counted(self, here, symbols, **how):
-        steps.append(here)
-        return after(self, here, symbols, **how)
+    def counted(self, about):
+        steps.append(about)
+        return step(self, about)
 
-    after = untold_names.RequiredNames._after
-    monkeypatch.setattr(untold_names.RequiredNames, "_after", counted)
+    step = untold_names.RequiredNames._step
+    monkeypatch.setattr(untold_names.RequiredNames, "_step", counted)
     assert judged_rules(compiled, frozenset({"q"}), cut=True).not_judged == ()
     # As many as the duty has steps, once or twice.
     assert 200 <= len(steps) <= 1000

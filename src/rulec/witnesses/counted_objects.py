@@ -17,6 +17,7 @@ from rulec.automata.alphabet import reads_of
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic.formula import Count, Formula, Term
 from rulec.logic.free_names import variables_of
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses import letter_functions
 from rulec.witnesses.counted_types import bodies_for, can_add, types_counted
@@ -143,7 +144,7 @@ class CountedObjectKinds:
     def __init__(self, universe: ObjectUniverse, known: Set[Subject] | None = None) -> None:
         self.universe = universe
         self._known = known
-        self._fitting: dict[object, list[_CountedType]] = {}
+        self._types = Remembered(self._distinct_types, None)
 
     def of(self, state: JointState, types: Sequence[str] = ()) -> list[CountedObject]:
         """The kinds for a state, most general types first.
@@ -152,7 +153,7 @@ class CountedObjectKinds:
         """
         return [
             candidate
-            for counted in self._types(tuple(_counts_of(state)), tuple(types))
+            for counted in self._types[tuple(_counts_of(state)), tuple(types)]
             for candidate in self._of_type(counted, state)
         ]
 
@@ -161,19 +162,13 @@ class CountedObjectKinds:
 
         That is so if their numbers are compared with the state's, of which it has but one choice.
         """
-        types = self._types(tuple(_counts_of(state)), ())
+        types = self._types[tuple(_counts_of(state)), ()]
         return any(rest for counted in types for _, rest in counted.inputs)
 
-    def _types(self, counts: tuple[Count, ...], types: tuple[str, ...]) -> Sequence[_CountedType]:
-        key = counts, types
-        if key not in self._fitting:
-            self._fitting[key] = list(self._distinct_types(counts, types))
-        return self._fitting[key]
-
     def _distinct_types(
-        self, counts: Sequence[Count], types: Sequence[str]
-    ) -> Iterator[_CountedType]:
-        vocabulary = self.universe.vocabulary
+        self, key: tuple[tuple[Count, ...], tuple[str, ...]]
+    ) -> Sequence[_CountedType]:
+        vocabulary, (counts, types), found = self.universe.vocabulary, key, []
         for kind in types_counted(counts, types, vocabulary):
             bodies = bodies_for(kind, counts, vocabulary)
             about = axioms_about(kind, self.universe)
@@ -181,7 +176,8 @@ class CountedObjectKinds:
             counted = _fitting_type(kind, places, own, about, Itself(vocabulary))
             if can_add(own):
                 self._require_known(counted)
-            yield counted
+            found.append(counted)
+        return found
 
     def _require_known(self, counted: _CountedType) -> None:
         """Raise UndecidedError if a state would be asked for a value that it does not tell."""

@@ -11,6 +11,7 @@ from rulec.monitoring.uncertainty import uncertain_machine
 from rulec.monitoring.uncertainty.run_pairs import Prospects
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses, PossibleWord
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
+from rulec.witnesses.letter_functions import letter_of
 from support.generators.seeds import seeds
 
 N_CLASSES = 4
@@ -50,16 +51,27 @@ def test_tables_say_what_may_come_of_each_state(n_states, chance):
 
 
 @given(seeds)
-def test_letters_of_one_cube_are_classed_side_by_side_as_others_are(chance):
-    classes = LetterClasses(machine(chance, 2))
-    one, other = (tuple([chance.randrange(1, 4) for _ in READS]) for _ in range(2))
-    fixed = tuple([n for n in range(len(READS)) if chance.random() < 0.5])
-    # Said twice it is the same letter, and takes the way of those of several cubes
-    expected = classes.side_by_side((one, one), (other, other), fixed)
-    assert classes.side_by_side((one,), (other,), fixed) == expected
-    assert classes.side_by_side((one,), (one,), fixed) == classes.side_by_side(
-        (one, one), (one,), fixed
+def test_letters_are_side_by_side_that_agree_on_what_is_fixed(chance):
+    own = machine(chance, 2)
+    n_cubes = chance.randrange(1, 4)
+    left, right = (
+        tuple([tuple([chance.randrange(1, 4) for _ in READS]) for _ in range(n_cubes)])
+        for _ in range(2)
     )
+    fixed = tuple([n for n in range(len(READS)) if chance.random() < 0.5])
+    found = LetterClasses(own).side_by_side(left, right, fixed)
+
+    def letters(cubes):
+        every = {digits for cube in cubes for digits in product(*map(bits_of, cube))}
+        classed = {digits: own.letters[letter_of(digits, READS)] for digits in every}
+        return {digits: symbol for digits, symbol in classed.items() if symbol >= 0}
+
+    assert {pair for x, y in found for pair in product(bits_of(x), bits_of(y))} == {
+        (first, second)
+        for one, first in letters(left).items()
+        for other, second in letters(right).items()
+        if all(one[n] == other[n] for n in fixed)
+    }
 
 
 @given(seeds)

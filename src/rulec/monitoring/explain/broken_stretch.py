@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from rulec.logic import formula as ltl
-from rulec.monitoring.explain.observed_word import ObservedWord
+from rulec.monitoring.explain.observed_states import ObservedWord
 
 
 def broken_stretch(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -25,13 +25,12 @@ from rulec.monitoring.explain.explained_parts import (
     parts_of,
     with_margins,
 )
-from rulec.monitoring.explain.explained_states import shown_states, states_to_explain
 from rulec.monitoring.explain.margins import Margin, choosing_comparisons
 from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
-from rulec.monitoring.explain.observed_states import ObservedStates
-from rulec.monitoring.explain.observed_word import ObservedWord
+from rulec.monitoring.explain.observed_states import ObservedStates, ObservedWord
 from rulec.monitoring.explain.turning_margins import turning
 from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.known_words import KnownLetters
@@ -276,3 +275,46 @@ def _window(numbers: Sequence[int], place: int) -> tuple[int, int]:
     while first and numbers[first - 1] == numbers[first] - 1:
         first -= 1
     return numbers[first], numbers[-1]
+
+
+def states_to_explain(
+    machine: MealyMonitor,
+    stretch: range,
+    decisive: int,
+    word: Callable[[int, int], Sequence[int]],
+) -> Sequence[int]:
+    """The numbers of the states that explain a violation with this decisive state, ascending.
+
+    Of a long ``stretch`` these are a window around the decisive state, the first state, and the
+    fewest states before the window that bring the machine into the same state as the whole stretch:
+    where the machine returns to a state, what lies in between makes no difference. So these states
+    alone violate the rule, with the same decisive state. ``word`` gives the letter classes from one
+    state to another (inclusive).
+    """
+    window = range(
+        max(stretch.start, decisive - LIMITS.states_explained),
+        min(stretch.stop, decisive + LIMITS.states_explained + 1),
+    )
+    if len(stretch) <= 2 * LIMITS.states_explained or window.start == stretch.start:
+        return stretch[: window.stop - stretch.start] if len(window) < len(stretch) else stretch
+    first, *letters = word(stretch.start, window.start - 1)
+    state = machine.successors[0][first]
+    way, length_at = [stretch.start], {state: 1}
+    for number, letter in enumerate(letters, stretch.start + 1):
+        state = machine.successors[state][letter]
+        if state in length_at:
+            del way[length_at[state] :]
+            length_at = {at: n for at, n in length_at.items() if n <= len(way)}
+        else:
+            way.append(number)
+            length_at[state] = len(way)
+    return [*way, *window]
+
+
+def shown_states(stretch: range, decisive: int) -> tuple[int, ...]:
+    """The numbers of the states of a stretch that an explanation shows."""
+    if len(stretch) <= LIMITS.states_shown:
+        return tuple(stretch)
+    last = min(decisive + 1, stretch[-1])
+    first = max(stretch[0], last - LIMITS.states_shown + 2)
+    return tuple(sorted({stretch[0], *range(first, last + 1)}))

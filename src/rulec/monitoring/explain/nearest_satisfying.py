@@ -16,6 +16,7 @@ from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.uncertainty.known_words import run
+from rulec.trace.remembered import Remembered
 from rulec.witnesses.state_synthesis import are_consistent
 
 Letter = tuple[int, ...]
@@ -54,7 +55,7 @@ def nearest_satisfying(machine: MealyMonitor, word: Sequence[Letter]) -> tuple[R
     alphabet = _LetterDistances(machine)
     given = [alphabet.number(letter) for letter in word]
     while True:
-        letters = _nearest(machine, [alphabet.near(letter) for letter in word])
+        letters = _nearest(machine, [alphabet.near[letter] for letter in word])
         if letters is None:
             return None
         changed = [place for place, letter in enumerate(letters) if letter != given[place]]
@@ -68,7 +69,7 @@ def nearest_satisfying(machine: MealyMonitor, word: Sequence[Letter]) -> tuple[R
         if letters[place] != given[place]:
             rest = symbols[place + 1 :] if place == changed[-1] else None
             does = _as_good(machine, state, symbol, rest)
-            repairs.append(Repair(place, alphabet.ways(word[place], letters[place], does)))
+            repairs.append(Repair(place, alphabet.ways[word[place], letters[place], does]))
         state = machine.successors[state][symbol]
     return tuple(repairs)
 
@@ -170,10 +171,13 @@ class _LetterDistances:
         self._numbers = [n for n, read in enumerate(machine.reads) if isinstance(read, NumberRead)]
         self._classes = list(machine.letters)
         self._n_classes = len(machine.successors[0])
-        self._near: dict[Letter, _Near] = {}
-        self._differ: dict[Letter, Sequence[int]] = {}
-        self._can_be: dict[Letter, bool] = {}
-        self._ways: dict[tuple[Letter, int, tuple[bool, ...]], tuple[Cube, ...]] = {}
+        self.near = Remembered(self._distances, None)
+        """The distances of the classes from a letter."""
+        self._differ = Remembered(self._differs)
+        """In how many reads each letter differs from a given one."""
+        self._can_be = Remembered(self._are_consistent)
+        self.ways = Remembered(self._some_ways)
+        """Cubes of letters as near to a given one, by the number of one, and the good classes."""
 
     def number(self, letter: Letter) -> int:
         """The number of a letter among all."""
@@ -183,26 +187,20 @@ class _LetterDistances:
         """The digits of some reads in a letter."""
         return tuple([number // self._strides[n] % self._sizes[n] for n in reads])
 
-    def near(self, letter: Letter) -> _Near:
-        """The distances of the classes from a letter."""
-        if letter not in self._near:
-            best, nearest = [_FAR] * self._n_classes, [0] * self._n_classes
-            differs = enumerate(self._differs(letter))
-            for symbol, (number, distance) in zip(self._classes, differs, strict=True):
-                if symbol != IMPOSSIBLE and distance < best[symbol]:
-                    best[symbol], nearest[symbol] = distance, number
-            self._near[letter] = _Near(best, nearest)
-        return self._near[letter]
+    def _distances(self, letter: Letter) -> _Near:
+        best, nearest = [_FAR] * self._n_classes, [0] * self._n_classes
+        differs = enumerate(self._differ[letter])
+        for symbol, (number, distance) in zip(self._classes, differs, strict=True):
+            if symbol != IMPOSSIBLE and distance < best[symbol]:
+                best[symbol], nearest[symbol] = distance, number
+        return _Near(best, nearest)
 
     def _differs(self, letter: Letter) -> Sequence[int]:
-        """In how many reads each letter differs from a given one."""
-        if letter not in self._differ:
-            counts = b"\0"
-            for size, given in zip(self._sizes, letter, strict=True):
-                other = bytes([n + 1 for n in counts])
-                counts = b"".join([counts if digit == given else other for digit in range(size)])
-            self._differ[letter] = counts
-        return self._differ[letter]
+        counts = b"\0"
+        for size, given in zip(self._sizes, letter, strict=True):
+            other = bytes([n + 1 for n in counts])
+            counts = b"".join([counts if digit == given else other for digit in range(size)])
+        return counts
 
     def exclude(self, letters: Sequence[int]) -> None:
         """Exclude these letters, and all letters with the same digits of numbers."""
@@ -210,26 +208,21 @@ class _LetterDistances:
         for number in range(len(self._classes)):
             if self._digits(number, self._numbers) in wrong:
                 self._classes[number] = IMPOSSIBLE
-        self._near.clear()
+        self.near.clear()
 
     def can_be(self, number: int) -> bool:
         """Whether some numbers have the digits of this letter."""
-        digits = self._digits(number, self._numbers)
-        if digits not in self._can_be:
-            reads = [read for read in self._reads if isinstance(read, NumberRead)]
-            self._can_be[digits] = are_consistent(list(zip(reads, digits, strict=True)))
-        return self._can_be[digits]
+        return self._can_be[self._digits(number, self._numbers)]
 
-    def ways(self, given: Letter, number: int, does: tuple[bool, ...]) -> tuple[Cube, ...]:
-        """Cubes of equally good letters, as near to a given one."""
-        key = given, number, does
-        if key not in self._ways:
-            cubes = islice(self._all_ways(given, number, does), LIMITS.repairs_listed)
-            self._ways[key] = tuple(cubes)
-        return self._ways[key]
+    def _are_consistent(self, digits: Letter) -> bool:
+        reads = [read for read in self._reads if isinstance(read, NumberRead)]
+        return are_consistent(list(zip(reads, digits, strict=True)))
+
+    def _some_ways(self, about: tuple[Letter, int, tuple[bool, ...]]) -> tuple[Cube, ...]:
+        return tuple(islice(self._all_ways(*about), LIMITS.repairs_listed))
 
     def _all_ways(self, given: Letter, number: int, does: tuple[bool, ...]) -> Iterator[Cube]:
-        differs = self._differs(given)
+        differs = self._differ[given]
         good = [
             letter
             for letter, symbol in enumerate(self._classes)

@@ -8,8 +8,7 @@ from fractions import Fraction
 
 from rulec.logic import formula as ltl
 from rulec.logic.linear_comparison import stands
-from rulec.monitoring.explain.observed_states import ObservedStates
-from rulec.monitoring.explain.observed_word import ObservedWord
+from rulec.monitoring.explain.observed_states import ObservedStates, ObservedWord
 
 _MOST_STATES = 20
 """So many states up to the decisive one are looked through."""

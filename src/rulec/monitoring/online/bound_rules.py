@@ -18,18 +18,22 @@ from rulec.monitoring.bindings import Cast, in_usual_order
 from rulec.monitoring.implied_values import with_implied_signals
 from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
-from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.group_letters import GroupLetters
-from rulec.monitoring.online.partial_states import RulesOfAll, StateReader, rules_of_all
-from rulec.monitoring.online.prepared_rule import PreparedRule
+from rulec.monitoring.online.partial_states import RulesOfAll, careful_classes, rules_of_all
+from rulec.monitoring.online.prepared_rule import PossibleClasses, PreparedRule
 from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups
-from rulec.monitoring.online.uncertain_steps import Edge
+from rulec.monitoring.online.rule_steps import Edge
 from rulec.monitoring.state_validation import check_state
 from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings
-from rulec.monitoring.uncertainty.state_letters.possible_letters import BoundLetters, bound_letters
+from rulec.monitoring.uncertainty.state_letters.possible_letters import (
+    BoundLetters,
+    PossibleLetters,
+    bound_letters,
+)
 from rulec.resource_limits import CHOICES
 from rulec.rulebook.rules.axiom_instances import counts
-from rulec.trace import State
+from rulec.trace import State, Trace
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary.vocabulary_model import choices
 
 Awake: TypeAlias = Mapping[tuple[str, ...], Collection[Items]]
@@ -86,7 +90,7 @@ class BoundRules:
         self._counting = any(counts(axiom.formula) for axiom in rulebook.axioms)
         self._letters: BoundLetters | None = None
         self._of_all: RulesOfAll | None = None
-        self._readers: dict[tuple[str, ...], GroupLetters | None] = {}
+        self._readers = Remembered(self._reader_of, MOST_SHAPES)
         self.lazy: list[RuleGroup] = []
         self._awake: dict[tuple[str, ...], frozenset[Items]] = {}
         cast = Cast(self.objects, rulebook.vocabulary, 1, {})
@@ -126,7 +130,7 @@ class BoundRules:
         for group in self.lazy:
             own = awake.setdefault(group.types, {})
             for prepared in group.rules:
-                bits = reader.bits_of(prepared)
+                bits = reader.bits_of(prepared.rule)
                 bound = doubtful_bindings(prepared.rule, cast, bits, prepared.idle)
                 own.update((tuple(binding.objects.values()), None) for binding in bound)
         return awake
@@ -142,7 +146,7 @@ class BoundRules:
         try:
             state = with_implied_signals(state, self._rulebook.vocabulary)
             names = tuple(state)
-            reader = self._readers[names] if names in self._readers else self._reader_of(names)
+            reader = self._readers[names]
             if reader is not None:
                 encoded = reader.shape.encode(state)
                 known = reader.shape, encoded
@@ -162,20 +166,24 @@ class BoundRules:
 
         None if they must be read like ``verify`` does.
         """
-        if len(self._readers) >= MOST_SHAPES:
-            self._readers.clear()
-        self._readers[names] = None
         with suppress(LookupError, TypeError):
             vocabulary, breakpoints = self._rulebook.vocabulary, self.groups.breakpoints
             shape = StateShape(names, self.objects, vocabulary, breakpoints)
-            self._readers[names] = GroupLetters(shape, self._bindings)
-        return self._readers[names]
+            return GroupLetters(shape, self._bindings)
+        return None
 
-    def _state_reader(self, state: State, where: tuple[str, SourceLocation | None]) -> StateReader:
+    def _state_reader(
+        self, state: State, where: tuple[str, SourceLocation | None]
+    ) -> PossibleLetters:
         if self._letters is None:
             rulebook = self._rulebook
             self._letters = bound_letters(rulebook, self.objects, rulebook.vocabulary)
-        return StateReader(state, self._rulebook, self.objects, where, self._letters)
+        name, place = where
+        trace = Trace("", 1.0, self.objects, (state,), place=place)
+        vocabulary = self._rulebook.vocabulary
+        return PossibleLetters(
+            trace, self._rulebook, vocabulary, lambda _: name, bound=self._letters
+        )
 
     def inexact(self, letters: Letters) -> frozenset[str]:
         """Rules whose possible letters are overestimated in a state with these letters."""
@@ -188,7 +196,7 @@ class BoundRules:
             begin += len(bindings)
         return inexact
 
-    def _checked(self, state: State, number: int, place: SourceLocation | None) -> StateReader:
+    def _checked(self, state: State, number: int, place: SourceLocation | None) -> PossibleLetters:
         """A reader like that of ``verify``, with all cases and errors."""
         name, rulebook = f"state {number}", self._rulebook
         check_state(state, self.objects, rulebook.vocabulary, name, place)
@@ -197,12 +205,12 @@ class BoundRules:
         check_counting_axioms(rulebook, 1, reader.view, name.format, place)
         return reader
 
-    def _careful_letters(self, reader: StateReader) -> Letters:
+    def _careful_letters(self, reader: PossibleLetters) -> Letters:
         """Letters read like ``verify`` does, in the same order, so that it finds the same error."""
-        read: list[list[tuple[LetterClass, bool]]] = [[] for _ in self._at]
+        read: list[list[PossibleClasses]] = [[] for _ in self._at]
         for own in self.rules:
             for at, items in enumerate(own.bindings, own.places.start):
-                read[at].append(reader.letter_class(own.prepared, items))
+                read[at].append(careful_classes(reader, own.prepared, items))
         return [group.letter_read(own) for (group, _), own in zip(self._at, read, strict=True)]
 
     def _filled(
@@ -226,13 +234,13 @@ class BoundRules:
             self._of_all = rules_of_all(self._rulebook, self.objects)
         of_all, number = self._of_all, where[0]
 
-        def read(prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:
-            classes = of_all.letter_class(prepared, items, state)
-            if classes is None:
+        def read(prepared: PreparedRule, items: Items) -> PossibleClasses:
+            try:
+                return of_all[prepared, items].classes(state)
+            except LookupError:
                 # Something is wrong.
                 reader = self._state_reader(state, (f"state {number}", where[1]))
-                classes = reader.letter_class(prepared, items)
-            return classes
+                return careful_classes(reader, prepared, items)
 
         for at, group, items in has_holes:
             letters[at] = group.filled(letters[at], items, read)

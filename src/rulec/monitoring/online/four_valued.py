@@ -1,4 +1,4 @@
-"""Four-valued verdicts on running traces, and Mealy monitors as linked edges.
+"""Four-valued verdicts on running traces.
 
 RV-LTL: A. Bauer, M. Leucker, C. Schallhart, "Comparing LTL semantics for runtime verification",
 Journal of Logic and Computation 20(3), 2010.
@@ -6,8 +6,7 @@ Journal of Logic and Computation 20(3), 2010.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable
 from typing import Literal, NamedTuple, TypeAlias
 
 from rulec.automata.mealy_monitor import MealyMonitor
@@ -33,11 +32,8 @@ class VerdictRange(NamedTuple):
 RunningVerdict: TypeAlias = "FourValued | VerdictRange"
 """A known verdict, or a range that contains it."""
 
-LetterClass: TypeAlias = int
-"""A class of letters; numbers beyond a rule's classes stand for a set of classes.
-
-``UncertainSteps`` numbers the sets: the garbage collector tracks sets, but not numbers.
-"""
+ClassSet: TypeAlias = int
+"""The classes of letters that a state may have, as bits."""
 
 
 def best_of(verdict: RunningVerdict) -> FourValued:
@@ -53,49 +49,6 @@ def worst_of(verdict: RunningVerdict) -> FourValued:
 def within(best: FourValued, worst: FourValued) -> RunningVerdict:
     """The verdict that lies between these two."""
     return best if best == worst else VerdictRange(best, worst)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class MonitorEdge:
-    """An edge of a monitor: the state reached, and the four-valued verdict.
-
-    ``successors`` has an edge for each letter class that may come next. Equal edges of one monitor
-    are identical objects.
-    """
-
-    successors: list[MonitorEdge]
-    state: int
-    verdict: FourValued
-
-
-def linked_edges(
-    machine: MealyMonitor,
-) -> tuple[MonitorEdge, dict[tuple[int, FourValued], MonitorEdge]]:
-    """The start of a monitor, before its first letter, and its edges.
-
-    The edges are given by the state reached and the verdict.
-    """
-    verdicts = [
-        [four_valued(machine, *ends) for ends in zip(targets, row, strict=True)]
-        for targets, row in zip(machine.successors, machine.outputs, strict=True)
-    ]
-    rows, edges = edges_between(machine.successors, verdicts)
-    before_all: FourValued = "satisfied" if machine.accepting_sink == 0 else "holds so far"
-    return MonitorEdge(rows[0], 0, before_all), edges
-
-
-def edges_between(
-    successors: Sequence[Sequence[int]], verdicts: Sequence[Sequence[FourValued]]
-) -> tuple[list[list[MonitorEdge]], dict[tuple[int, FourValued], MonitorEdge]]:
-    """The edges that leave each state, and all edges by state reached and verdict."""
-    rows: list[list[MonitorEdge]] = [[] for _ in successors]
-    edges: dict[tuple[int, FourValued], MonitorEdge] = {}
-    for row, targets, said in zip(rows, successors, verdicts, strict=True):
-        for target, verdict in zip(targets, said, strict=True):
-            if (target, verdict) not in edges:
-                edges[target, verdict] = MonitorEdge(rows[target], target, verdict)
-            row.append(edges[target, verdict])
-    return rows, edges
 
 
 def four_valued(machine: MealyMonitor, state: int, accepted: bool) -> FourValued:

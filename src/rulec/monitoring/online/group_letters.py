@@ -5,28 +5,31 @@ The letters for one state of the world, and for some values, are computed once a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from operator import itemgetter
 from typing import Any, TypeAlias
 
 from rulec.monitoring.online.encoding import encoded_values
-from rulec.monitoring.online.encoding.encoded_values import (
-    Encoded,
-    MonitorInput,
-    digits_between,
-)
+from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
+from rulec.monitoring.online.prepared_rule import ReadSource
 from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.state_view import StateView, value_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
-from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.trace import State
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN
 
 MOST = 1 << 12
 """How many states of the world, and letters of each group, are kept before all are discarded."""
+
+_LetterTable: TypeAlias = Remembered[Any, int]
+"""The letters of a group by the encoded values of its sources that are about variables.
+
+The key is the encoded value of a single source, or a tuple for several.
+"""
 
 _ReadColumn: TypeAlias = Callable[[State, Sequence[Encoded]], Sequence[Any]]
 """Maps a state and its parts to the encoded values of an input, for each of several bindings."""
@@ -55,7 +58,9 @@ class GroupLetters:
                 values = frozenset([*declaration.values, encoded_values.MISSING, UNKNOWN])
                 self._unread.append((part, slice(place, place + 1), values))
         self._keys = [reader.keys for reader in self._readers]
-        self._by_world: dict[tuple[Encoded, ...], list[_LetterTable]] = {}
+        self._by_world: Remembered[tuple[Encoded, ...], list[_LetterTable]] = Remembered(
+            lambda world: [reader.in_world(world) for reader in self._readers], MOST
+        )
 
     def letters(self, state: State, parts: tuple[Encoded, ...]) -> list[int]:
         """The letter of each binding of each group, one after the other.
@@ -67,57 +72,9 @@ class GroupLetters:
                 raise LookupError
         world = parts[: self.shape.n_world]
         letters: list[int] = []
-        tables = self._by_world.get(world) or self._in_world(world)
-        for keys, known in zip(self._keys, tables, strict=True):
+        for keys, known in zip(self._keys, self._by_world[world], strict=True):
             letters += map(known.__getitem__, keys(state, parts))
         return letters
-
-    def _in_world(self, world: tuple[Encoded, ...]) -> list[_LetterTable]:
-        in_world = self._by_world.get(world)
-        if in_world is None:
-            if len(self._by_world) >= MOST:
-                self._by_world.clear()
-            in_world = [reader.in_world(world) for reader in self._readers]
-            self._by_world[world] = in_world
-        return in_world
-
-
-class _LetterTable(dict[Any, int]):
-    """The letters of a group by the encoded values of its own inputs.
-
-    The key is the encoded value of a single input, or a tuple for several.
-    """
-
-    __slots__ = ("_breakpoints", "_group", "_others", "_own")
-
-    def __init__(
-        self,
-        group: RuleGroup,
-        own: Sequence[MonitorInput],
-        others: Mapping[MonitorInput, Any],
-        breakpoints: encoded_values.Breakpoints,
-    ) -> None:
-        self._group = group
-        self._own = own
-        self._others = others
-        self._breakpoints = breakpoints
-
-    def __missing__(self, key: Any) -> int:
-        letter = self._group.letter_of(self._digits(key))
-        if len(self) >= MOST:
-            self.clear()
-        self[key] = letter
-        return letter
-
-    def _digits(self, key: Any) -> Mapping[MonitorInput, Any]:
-        own = self._own
-        if not own:
-            return self._others
-        encoded = (key,) if len(own) == 1 else key
-        digits = dict(self._others)
-        for read, value in zip(own, encoded, strict=True):
-            digits[read] = read.digit(value, self._breakpoints)
-        return digits
 
 
 class _GroupReader:
@@ -129,45 +86,48 @@ class _GroupReader:
     def __init__(self, group: RuleGroup, bindings: Sequence[Items], shape: StateShape) -> None:
         self.read = set[tuple[str, Items]]()
         self._group = group
-        self._breakpoints = shape.breakpoints
         self.n_bindings = len(bindings)
-        self._not_given: dict[MonitorInput, Any] = {}
-        self._world: list[tuple[MonitorInput, int, int]] = []
-        self._own: list[MonitorInput] = []
+        self._given: list[Any] = [None] * len(group.reads.sources)
+        self._world: list[tuple[int, int, int]] = []
+        self._own: list[int] = []
         self._columns: list[_ReadColumn] = []
         # The parts that are used as columns directly; None for columns built from a state.
         whole: list[int | None] = []
-        for read in (*group.world, *group.own):
-            about = [tuple([binding[place] for place in read.places]) for binding in bindings]
-            if read.name is None:
-                self._own.append(read)
-                self._columns.append(_sum_column(read, about, shape))
+        for number, source in enumerate(group.reads.sources):
+            about = [tuple([binding[place] for place in source.places]) for binding in bindings]
+            if source.name is None:
+                self._own.append(number)
+                self._columns.append(_sum_column(source, about, shape))
                 whole.append(None)
                 continue
-            if read.name not in shape.names:
-                declaration = shape.vocabulary.declarations[read.name]
-                default = encoded_values.encoded_default(declaration, shape.breakpoints)
-                self._not_given[read] = read.digit(default, shape.breakpoints)
+            if source.name not in shape.names:
+                declaration = shape.vocabulary.declarations[source.name]
+                self._given[number] = encoded_values.encoded_default(declaration, shape.breakpoints)
                 continue
-            self.read.update((read.name, items) for items in about)
-            places = [shape.places[read.name, items] for items in about]
-            if read.places:
+            self.read.update((source.name, items) for items in about)
+            places = [shape.places[source.name, items] for items in about]
+            if source.places:
                 part = _whole_part(places, shape)
-                self._own.append(read)
+                self._own.append(number)
                 self._columns.append(_values_column(places) if part is None else _part_column(part))
                 whole.append(part)
             else:
-                self._world.append((read, *places[0]))
+                self._world.append((number, *places[0]))
         self.keys = self._read_keys(whole)
 
     def in_world(self, world: Sequence[Encoded]) -> _LetterTable:
         """The letters of all bindings, for one world state."""
-        digits = {
-            read: read.digit(world[part][place], self._breakpoints)
-            for read, part, place in self._world
-        }
-        others = {**self._not_given, **digits}
-        return _LetterTable(self._group, self._own, others, self._breakpoints)
+        group, own, given = self._group, self._own, list(self._given)
+        for number, part, place in self._world:
+            given[number] = world[part][place]
+
+        def letter(key: Any) -> int:
+            values = list(given)
+            for place, value in zip(own, (key,) if len(own) == 1 else key, strict=True):
+                values[place] = value
+            return group.letter_read(group.reads.classes(values))
+
+        return Remembered(letter, MOST)
 
     def _read_keys(self, whole: Sequence[int | None]) -> _ReadKeys:
         columns, n_bindings = self._columns, self.n_bindings
@@ -195,11 +155,10 @@ def _values_column(places: Sequence[tuple[int, int]]) -> _ReadColumn:
     return lambda _, parts: pick(parts[part])
 
 
-def _sum_column(read: MonitorInput, about: Sequence[Items], shape: StateShape) -> _ReadColumn:
-    number = read.number
-    assert number is not None
-    ready = read_digits(number)
-    bindings = [dict(zip(read.variables, items, strict=True)) for items in about]
+def _sum_column(source: ReadSource, about: Sequence[Items], shape: StateShape) -> _ReadColumn:
+    ready = source.sum
+    assert ready is not None, "it has no name"
+    bindings = [dict(zip(ready.variables, items, strict=True)) for items in about]
     summands = [
         [
             (name, tuple([binding[x] for x in own]), shape.vocabulary.declarations[name])
@@ -210,7 +169,7 @@ def _sum_column(read: MonitorInput, about: Sequence[Items], shape: StateShape) -
 
     def column(state: State, _: Sequence[Encoded]) -> Sequence[Any]:
         view = StateView(state, shape.objects, shape.vocabulary)
-        digits: list[int | range] = []
+        digits = []
         for binding, own in zip(bindings, summands, strict=True):
             possible = ready.of_sum([value_in(state, *one) for one in own]) if own else None
             if possible is None:
@@ -219,8 +178,7 @@ def _sum_column(read: MonitorInput, about: Sequence[Items], shape: StateShape) -
                     possible = ready.in_state(binding, view)
                 except MissingValueError:
                     raise LookupError from None
-            lowest = (possible & -possible).bit_length() - 1
-            digits.append(digits_between(lowest, possible.bit_length() - 1))
+            digits.append(possible)
         return digits
 
     return column

@@ -26,8 +26,8 @@ from rulec.monitoring.online.rule_group import (
     OtherVerdictError,
     RuleGroup,
 )
+from rulec.monitoring.online.rule_steps import Edge
 from rulec.monitoring.online.running_constants import NO_CONSTANTS, KnownConstants
-from rulec.monitoring.online.uncertain_steps import Edge
 from rulec.value_display import short_repr
 
 
@@ -145,19 +145,7 @@ def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) 
         else:
             if nodes == before:
                 return current, ()
-            verdict, n_violations = current.verdict, current.n_violations
-            after = MonitorState(
-                bound_rules,
-                nodes,
-                verdict,
-                current.rules,
-                n_violations,
-                doubted=current.doubted,
-                inexact=current.inexact,
-                exact=current.exact,
-                constants=current.constants,
-            )
-            return after, ()
+            return msgspec.structs.replace(current, nodes=nodes, after={}), ()
     else:
         edges, changes = carry_over(current.bound_rules, current.nodes, bound_rules)
         before = nodes_at(bound_rules, edges)

@@ -7,29 +7,25 @@ in a state form one letter. The product is built lazily: nodes and letters are c
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence, Set
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.outcome_machine import OutcomeMachine
-from rulec.monitoring.online.encoding.encoded_values import (
-    Breakpoints,
-    MonitorInput,
-    breakpoints_of,
-)
+from rulec.monitoring.bindings import types_of
+from rulec.monitoring.online.encoding.encoded_values import Breakpoints, breakpoints_of
 from rulec.monitoring.online.encoding.state_shape import Items
-from rulec.monitoring.online.four_valued import (
-    LetterClass,
-    RunningVerdict,
+from rulec.monitoring.online.four_valued import ClassSet, RunningVerdict
+from rulec.monitoring.online.group_reads import GroupReads
+from rulec.monitoring.online.prepared_rule import (
+    BY_STATE,
+    PossibleClasses,
+    PreparedRule,
+    prepared_rule,
 )
-from rulec.monitoring.online.prepared_rule import BY_STATE, PreparedRule, prepared_rule
-from rulec.monitoring.online.uncertain_steps import Edge
-from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
+from rulec.monitoring.online.rule_steps import Edge
 
 MOST_CACHED = 1 << 18
 """How many nodes, letters and transitions are kept before all are discarded."""
-
-_SetsOfClasses: TypeAlias = tuple[tuple[LetterClass, ...], tuple[int, ...]]
-"""For each rule its class, and the numbers of the rules that read sets of classes."""
 
 
 class OtherVerdictError(Exception):
@@ -62,22 +58,9 @@ class GroupNode(dict[int, "GroupNode"]):
     def successor(self, letter: int) -> GroupNode:
         """The node after a letter."""
         classes = self.group.classes[letter]
-        try:
-            edges: list[Edge] = [
-                edge.successors[letter_class]
-                for edge, letter_class in zip(self.edges, classes, strict=True)
-            ]
-        except IndexError:
-            # Numbers beyond all classes stand for sets of classes.
-            single, sets = self.group.sets_in(letter)
-            edges = [
-                edge.successors[letter_class]
-                for edge, letter_class in zip(self.edges, single, strict=True)
-            ]
-            rules = self.group.rules
-            for place in sets:
-                edges[place] = rules[place].uncertain.rows[self.edges[place]][classes[place]]
-        return self.group.node(tuple(edges))
+        return self.group.node(
+            tuple([edge[own] for edge, own in zip(self.edges, classes, strict=True)])
+        )
 
 
 class CacheSize:
@@ -88,37 +71,23 @@ class CacheSize:
     has_holes = False
 
 
-class Holes(NamedTuple):
-    """The numbers of a letter's rules that read the whole state, and of those that are inexact."""
-
-    rules: tuple[int, ...]
-    inexact: frozenset[int]
-
-
 class RuleGroup:
-    """Rules whose variables have the same types, in the same order.
+    """Rules whose variables have the same types, in the same order, with what they read.
 
-    ``own`` are their inputs about variables, ``world`` those about none. ``classes`` are the letter
-    classes of each letter, one per rule; ``cache_size`` counts for all groups together. For
-    ``inexact`` letters the names of rules are kept whose classes are overestimated; letters with
-    ``holes`` must be ``filled`` before they are read.
+    ``classes`` are those of each letter, one set per rule; ``cache_size`` counts for all groups
+    together. For ``inexact`` letters the names of rules are kept whose classes are overestimated;
+    letters with ``holes``, which have the numbers of such rules, must be ``filled`` before they are
+    read.
     """
 
-    def __init__(
-        self, rules: Sequence[PreparedRule], types: tuple[str, ...], cache_size: CacheSize
-    ) -> None:
-        self.rules, self.types, self.cache_size = tuple(rules), types, cache_size
-        inputs = dict.fromkeys(read for prepared in rules for read in prepared.all_inputs)
-        self.own = tuple([read for read in inputs if read.places or read.name is None])
-        self.world = tuple([read for read in inputs if read not in self.own])
-        self.classes: list[tuple[LetterClass, ...]] = []
+    def __init__(self, reads: GroupReads, cache_size: CacheSize) -> None:
+        self.reads, self.cache_size = reads, cache_size
+        self.rules, self.types = reads.rules, reads.types
+        self.classes: list[tuple[ClassSet, ...]] = []
         self.inexact: dict[int, frozenset[str]] = {}
-        self.holes: dict[int, Holes] = {}
+        self.holes: dict[int, frozenset[int]] = {}
         self._letters: dict[tuple[object, ...], int] = {}
         self._nodes: dict[tuple[Edge, ...], GroupNode] = {}
-        self._sets: dict[int, _SetsOfClasses] = {}
-        self._tables = [(prepared.classes, values_at(prepared.all_inputs)) for prepared in rules]
-        self._all_inexact = [table.inexact for table, _ in self._tables]
 
     def node(self, edges: tuple[Edge, ...]) -> GroupNode:
         """The node with these edges, one per rule."""
@@ -127,20 +96,8 @@ class RuleGroup:
             self.cache_size.n += 1
         return self._nodes[edges]
 
-    def sets_in(self, letter: int) -> _SetsOfClasses:
-        """A letter's single classes, with placeholders for sets of classes, and their places."""
-        known = self._sets.get(letter)
-        if known is None:
-            classes, rules = self.classes[letter], self.rules
-            sets = tuple([n for n, own in enumerate(classes) if own >= rules[n].n_classes])
-            single = list(classes)
-            for place in sets:
-                single[place] = 0
-            known = self._sets[letter] = tuple(single), sets
-        return known
-
-    def letter(self, classes: tuple[LetterClass, ...], inexact: Set[int] = frozenset()) -> int:
-        """The letter with these classes, one per rule.
+    def letter(self, classes: tuple[ClassSet, ...], inexact: Set[int] = frozenset()) -> int:
+        """The letter with these classes, one set per rule.
 
         For the rules with ``inexact`` numbers the classes are overestimated.
         """
@@ -153,8 +110,7 @@ class RuleGroup:
             self.cache_size.n += 1
             if BY_STATE in classes:
                 self.cache_size.has_holes = True
-                own = tuple([n for n, known in enumerate(classes) if known == BY_STATE])
-                self.holes[letter] = Holes(own, frozenset(inexact))
+                self.holes[letter] = frozenset(inexact)
             elif inexact:
                 self.cache_size.is_inexact = True
                 self.inexact[letter] = frozenset(self.rules[number].name for number in inexact)
@@ -164,36 +120,19 @@ class RuleGroup:
         self,
         letter: int,
         items: Items,
-        read: Callable[[PreparedRule, Items], tuple[LetterClass, bool]],
+        read: Callable[[PreparedRule, Items], PossibleClasses],
     ) -> int:
         """The letter whose ``holes`` are filled with what those rules read of the objects."""
-        holes = self.holes[letter]
-        classes, inexact = list(self.classes[letter]), set(holes.inexact)
-        for number in holes.rules:
-            classes[number], is_exact = read(self.rules[number], items)
-            if not is_exact:
-                inexact.add(number)
-        return self.letter(tuple(classes), inexact)
-
-    def letter_of(self, digits: Mapping[MonitorInput, Any]) -> int:
-        """The letter for inputs with these digits or partly known values.
-
-        It may have holes. Raises LookupError or TypeError if a digit is missing or invalid, or if
-        no such state is possible.
-        """
-        read = [pick(digits) for _, pick in self._tables]
-        classes = tuple([table[own] for (table, _), own in zip(self._tables, read, strict=True)])
-        if not any(self._all_inexact):
-            return self.letter(classes)
-        inexact = frozenset(
-            number
-            for number, (inexact_here, own) in enumerate(zip(self._all_inexact, read, strict=True))
-            if inexact_here and own in inexact_here
+        inexact, classes = self.holes[letter], self.classes[letter]
+        return self.letter_read(
+            [
+                read(rule, items) if own == BY_STATE else (own, number not in inexact)
+                for number, (rule, own) in enumerate(zip(self.rules, classes, strict=True))
+            ]
         )
-        return self.letter(classes, inexact)
 
-    def letter_read(self, read: Sequence[tuple[LetterClass, bool]]) -> int:
-        """The letter with the class that each rule reads, given with whether this is exact."""
+    def letter_read(self, read: Sequence[PossibleClasses]) -> int:
+        """The letter with the classes that each rule reads, given with whether this is exact."""
         inexact = {number for number, (_, is_exact) in enumerate(read) if not is_exact}
         return self.letter(tuple([own for own, _ in read]), inexact)
 
@@ -205,27 +144,24 @@ class RuleGroups:
     be judged.
     """
 
-    def __init__(
-        self,
-        rules: Sequence[PreparedRule],
-        breakpoints: Breakpoints,
-        *,
-        lacks_hard: bool = False,
-    ) -> None:
-        self.rules, self.breakpoints = tuple(rules), breakpoints
+    def __init__(self, known: KnownReads, *, lacks_hard: bool = False) -> None:
+        self._known = known
+        self.rules, self.breakpoints = known.rules, known.breakpoints
         self.lacks_hard = lacks_hard
         self.cache_size = CacheSize()
-        by_types: dict[tuple[str, ...], list[PreparedRule]] = {}
-        for prepared in rules:
-            types = tuple([variable.type for variable in prepared.rule.variables])
-            by_types.setdefault(types, []).append(prepared)
-        self.groups = tuple(
-            [RuleGroup(members, types, self.cache_size) for types, members in by_types.items()]
-        )
+        self.groups = tuple([RuleGroup(reads, self.cache_size) for reads in known.groups])
 
     def without_cache(self) -> RuleGroups:
         """These groups with empty caches."""
-        return RuleGroups(self.rules, self.breakpoints, lacks_hard=self.lacks_hard)
+        return RuleGroups(self._known, lacks_hard=self.lacks_hard)
+
+
+class KnownReads(NamedTuple):
+    """The rules of a rulebook with what they read, the same for all monitors."""
+
+    rules: tuple[PreparedRule, ...]
+    breakpoints: Breakpoints
+    groups: tuple[GroupReads, ...]
 
 
 def rule_groups(
@@ -235,8 +171,18 @@ def rule_groups(
     lacks_hard: bool = False,
 ) -> RuleGroups:
     """Prepare the rules of a rulebook; ``cut`` are their machines if the past is unknown."""
-    rules = [
-        prepared_rule(rule, rulebook, None if cut is None else cut[rule.name])
-        for rule in rulebook.rules
-    ]
-    return RuleGroups(rules, breakpoints_of(rulebook), lacks_hard=lacks_hard)
+    rules = tuple(
+        [
+            prepared_rule(rule, rulebook, None if cut is None else cut[rule.name])
+            for rule in rulebook.rules
+        ]
+    )
+    known: dict[object, KnownReads] = rulebook.prepared.setdefault(KnownReads, {})
+    if rules not in known:
+        breakpoints = breakpoints_of(rulebook)
+        by_types: dict[tuple[str, ...], list[PreparedRule]] = {}
+        for prepared in rules:
+            by_types.setdefault(types_of(prepared.rule), []).append(prepared)
+        groups = tuple([GroupReads(members, breakpoints) for members in by_types.values()])
+        known[rules] = KnownReads(rules, breakpoints, groups)
+    return RuleGroups(known[rules], lacks_hard=lacks_hard)

@@ -15,7 +15,7 @@ from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.diagnostics.fault_messages import contained
 from rulec.monitoring.implied_values import with_words_in_state, words_meant
 from rulec.monitoring.online.bound_rules import BoundRules
-from rulec.monitoring.online.four_valued import MonitorEdge, without_sink, worst_of
+from rulec.monitoring.online.four_valued import without_sink, worst_of
 from rulec.monitoring.online.monitor_state import (
     MonitorState,
     SoFar,
@@ -264,8 +264,8 @@ class RunningMonitor:
         for bound_rule in bound_rules.rules:
             name = bound_rule.prepared.name
             for items, edge in zip(bound_rule.bindings, edges[name], strict=True):
-                if isinstance(edge, MonitorEdge):
-                    states[name, items] = edge.state
+                if edge.is_known:
+                    states[name, items] = edge.states[0]
                     if edge.verdict == "violated":
                         settled.add((name, items))
                     continue

@@ -20,7 +20,7 @@ from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online import running_constants
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.encoding.state_shape import Items
-from rulec.monitoring.online.four_valued import FourValued, MonitorEdge, VerdictRange
+from rulec.monitoring.online.four_valued import FourValued, VerdictRange
 from rulec.monitoring.online.monitor_state import (
     MonitorState,
     initial_state,
@@ -31,8 +31,8 @@ from rulec.monitoring.online.monitor_state import (
 )
 from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.online.rule_group import RuleGroups
+from rulec.monitoring.online.rule_steps import Edge
 from rulec.monitoring.online.running_constants import SavedConstant
-from rulec.monitoring.online.uncertain_steps import Edge
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
 
@@ -97,7 +97,7 @@ def to_data(
 ) -> dict[str, Any]:
     """JSON data of a monitor after a state, for ``from_data``."""
     edges = {rule: rule.edges(current.nodes) for rule in current.bound_rules.rules}
-    single = all(isinstance(edge, MonitorEdge) for row in edges.values() for edge in row)
+    single = all(edge.is_known for row in edges.values() for edge in row)
     doubted, inexact = sorted(current.doubted), sorted(current.inexact)
     constants = running_constants.to_data(current.constants)
     is_plain = single and not doubted and not inexact and not constants
@@ -130,8 +130,8 @@ def to_data(
 
 
 def _saved(edge: Edge) -> dict[str, Any]:
-    if isinstance(edge, MonitorEdge):
-        return {"state": edge.state, "verdict": edge.verdict}
+    if edge.is_known:
+        return {"state": edge.states[0], "verdict": edge.verdict}
     open_verdict = isinstance(edge.verdict, VerdictRange)
     return {
         "state": list(edge.states),
@@ -270,13 +270,15 @@ def _edges(saved: SavedMonitor, bound_rules: BoundRules) -> dict[str, list[Edge]
 
 
 def _edge(prepared: PreparedRule, saved: _Binding) -> Edge:
-    if isinstance(saved.state, int) and isinstance(saved.verdict, str):
-        return prepared.edges[saved.state, saved.verdict]
+    ends = prepared.steps.known_ends
     states = [saved.state] if isinstance(saved.state, int) else saved.state
-    if not states or not {state for state, _ in prepared.edges}.issuperset(states):
+    if not states or not {state for state, _ in ends}.issuperset(states):
         raise ValueError
     verdicts = [saved.verdict] if isinstance(saved.verdict, str) else saved.verdict
-    return prepared.uncertain.edge(states, verdicts)
+    edge = prepared.steps.edge(states, verdicts)
+    if isinstance(saved.state, int) and edge.is_known and (*states, *verdicts) not in ends:
+        raise ValueError
+    return edge
 
 
 def _violation(saved: _Violation, n_states: int, rules: Mapping[str, CompiledRule]) -> Violation:

@@ -15,6 +15,7 @@ from typing import TypeAlias
 
 from rulec.monitoring.uncertainty.run_pairs import Pairs, RunPairs, Word
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
+from rulec.trace.remembered import Remembered
 
 BEFORE = ""
 """Stands among names for the time before the first state."""
@@ -51,7 +52,7 @@ class Dependence:
         self._runs = runs
         self._unknown = unknown
         self._alternatives = [(runs.word(own.stretches), own.constants) for own in alternatives]
-        self._stretches: dict[tuple[Word, Word], list[_Stretch]] = {}
+        self._alike = Remembered(_alike, None)
 
     def smallest(self, names: Sequence[str]) -> tuple[str, ...] | None:
         """The smallest set of names that decides; of equally small ones the first in order.
@@ -96,7 +97,7 @@ class Dependence:
 
     def _agree(self, first: Word, second: Word, fixed: tuple[int, ...], pairs: Pairs) -> bool:
         """Whether runs on two words, from pairs of states, cannot have different outcomes."""
-        runs, stretches = self._runs, self._alike(first, second)
+        runs, stretches = self._runs, self._alike[first, second]
         first_prospects, second_prospects = runs.prospects(first), runs.prospects(second)
         begin = 0
         for letters, length in stretches:
@@ -111,11 +112,9 @@ class Dependence:
             begin += length
         return runs.agree(pairs, runs.choices(first[-1], second[-1], fixed))
 
-    def _alike(self, first: Word, second: Word) -> list[_Stretch]:
-        """The pairs of letters of two words, except the last, each with its repetitions."""
-        stretches = self._stretches.get((first, second))
-        if stretches is None:
-            together = groupby(zip(first[:-1], second[:-1], strict=True))
-            stretches = [(letters, len(list(alike))) for letters, alike in together]
-            self._stretches[first, second] = stretches
-        return stretches
+
+def _alike(words: tuple[Word, Word]) -> list[_Stretch]:
+    """The pairs of letters of two words, except the last, each with its repetitions."""
+    first, second = words
+    together = groupby(zip(first[:-1], second[:-1], strict=True))
+    return [(letters, len(list(alike))) for letters, alike in together]

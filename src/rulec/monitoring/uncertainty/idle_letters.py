@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 from rulec.automata.outcome_machine import KEPT, SetMonitor
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
+from rulec.trace.remembered import Remembered
 
 
 class IdleLetters:
@@ -15,15 +16,14 @@ class IdleLetters:
     """
 
     def __init__(self, diagram: LetterDiagram, are_idle: Callable[[int], bool]) -> None:
-        self._diagram, self._are_idle = diagram, are_idle
-        self._known: dict[int, bool] = {}
+        self._diagram = diagram
+        self._known: Remembered[int, bool] = Remembered(
+            lambda classes: bool(classes) and are_idle(classes)
+        )
 
     def of_classes(self, classes: int) -> bool:
         """Whether letters of any of these classes, at least one, are idle."""
-        known = self._known.get(classes)
-        if known is None:
-            known = self._known[classes] = bool(classes) and self._are_idle(classes)
-        return known
+        return self._known[classes]
 
     def of_cube(self, cube: Sequence[int]) -> bool:
         """Whether letters are idle that have for each read any of its digits, as bits."""

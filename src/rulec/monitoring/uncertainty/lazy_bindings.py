@@ -27,6 +27,7 @@ from rulec.monitoring.bindings import (
 from rulec.monitoring.uncertainty.idle_letters import IdleLetters
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
 from rulec.resource_limits import CHOICES
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary.vocabulary_model import choices, fitting_objects
 
 ReadBits: TypeAlias = Callable[[Read | NumberRead, Mapping[str, str], tuple[int, int]], list[int]]
@@ -94,8 +95,10 @@ class _Search:
         ]
         """The reads that are known without any object, then those that each variable adds."""
         self._so_far = [tuple(chain(*self._known[: end + 1])) for end in range(len(self._known))]
-        self._columns: dict[tuple[int, tuple[str, ...]], tuple[list[int], int]] = {}
-        self._busy: dict[tuple[tuple[int, ...], tuple[int, ...]], bool] = {}
+        self._columns = Remembered(self._column, None)
+        """The digits of a read wherever its objects are present, and the first such state."""
+        self._busy = Remembered(self._is_busy)
+        """Whether some letter with these digits, as bits, of known reads is not idle."""
         self._most = CHOICES.value()
         self._tried = 0
 
@@ -108,7 +111,7 @@ class _Search:
                 continue
             types = [type_of[variable] for variable in variables]
             for chosen in choices(types, objects, self._cast.vocabulary):
-                self._column(number, chosen)
+                self._columns[number, chosen]
 
     def choices(self) -> Iterator[tuple[str, ...]]:
         """The choices of objects for which some state affects the rule's machine."""
@@ -175,7 +178,7 @@ class _Search:
     ) -> Mapping[int, tuple[int, ...]]:
         """The cubes with the reads of the last chosen object, where the rule may not be kept."""
         columns = [
-            self._column(number, tuple([chosen[place] for place in self._about[number]]))
+            self._columns[number, tuple([chosen[place] for place in self._about[number]])]
             for number in self._known[len(chosen)]
         ]
         known = self._so_far[len(chosen)]
@@ -183,7 +186,7 @@ class _Search:
         for state, cube in cubes.items():
             if state in own:
                 digits = *cube, *[column[state - first] for column, first in columns]
-                if self._is_busy(known, digits):
+                if self._busy[known, digits]:
                     result[state] = digits
         return result
 
@@ -191,35 +194,25 @@ class _Search:
         """The states with an object in which the rule may not be kept, whatever the others are."""
         own = binding_of({self._variables[place]: item}, self._cast.present, self._cast.n_states)
         known = tuple([n for n, about in enumerate(self._about) if set(about) <= {place}])
-        columns = [self._column(n, (item,) * len(self._about[n])) for n in known]
+        columns = [self._columns[n, (item,) * len(self._about[n])] for n in known]
         return frozenset(
             state
             for state in range(own.first, own.last + 1)
-            if self._is_busy(known, tuple([column[state - first] for column, first in columns]))
+            if self._busy[known, tuple([column[state - first] for column, first in columns])]
         )
 
-    def _column(self, number: int, items: tuple[str, ...]) -> tuple[list[int], int]:
-        """The digits of a read wherever its objects are present, and the first such state."""
-        key = number, items
-        if key not in self._columns:
-            read, variables = self._reads[number]
-            about = dict(zip(variables, items, strict=True))
-            own = binding_of(about, self._cast.present, self._cast.n_states)
-            met = own.first <= own.last
-            digits = self._read(read, about, (own.first, own.last)) if met else []
-            self._columns[key] = digits, own.first
-        return self._columns[key]
+    def _column(self, key: tuple[int, tuple[str, ...]]) -> tuple[list[int], int]:
+        (read, variables), items = self._reads[key[0]], key[1]
+        about = dict(zip(variables, items, strict=True))
+        own = binding_of(about, self._cast.present, self._cast.n_states)
+        met = own.first <= own.last
+        return self._read(read, about, (own.first, own.last)) if met else [], own.first
 
-    def _is_busy(self, known: tuple[int, ...], digits: tuple[int, ...]) -> bool:
-        """Whether some letter with these digits, as bits, of known reads is not idle."""
-        key = known, digits
-        busy = self._busy.get(key)
-        if busy is None:
-            cube = list(self._anything)
-            for number, own in zip(known, digits, strict=True):
-                cube[number] = own
-            busy = self._busy[key] = not self._idle.of_cube(cube)
-        return busy
+    def _is_busy(self, key: tuple[tuple[int, ...], tuple[int, ...]]) -> bool:
+        cube = list(self._anything)
+        for number, own in zip(*key, strict=True):
+            cube[number] = own
+        return not self._idle.of_cube(cube)
 
 
 def _variables_of(read: Read | NumberRead) -> tuple[str, ...]:

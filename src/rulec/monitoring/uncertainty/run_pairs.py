@@ -11,6 +11,7 @@ from typing import TypeAlias
 from rulec.automata.outcome_machine import OutcomeMachine, bits_of
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
+from rulec.trace.remembered import Remembered
 
 MOST_REMEMBERED = 1 << 14
 """How many steps are kept before all are discarded."""
@@ -44,32 +45,32 @@ class RunPairs:
         self._classes = classes
         self._prospects = Prospects(machine)
         self._safe = sum(1 << state for state in machine.safe)
-        self._starts: dict[bool, Pairs] = {}
+        self._starts = Remembered(self._start_pairs)
         self._forget()
 
     def _forget(self) -> None:
         self._numbers: dict[Letters, int] = {}
         self._letters: list[Letters] = []
         self._open: list[frozenset[int]] = []
-        self._choices: dict[tuple[int, int, tuple[int, ...]], int] = {}
+        self._choices = Remembered(self._choices_left, None)
         self._places: dict[frozenset[tuple[int, int]], int] = {}
         self._sets: list[frozenset[tuple[int, int]]] = []
-        self._after: dict[tuple[Pairs, int], Pairs] = {}
-        self._onward: dict[tuple[tuple[int, int], int], list[tuple[int, int]]] = {}
-        self._least: dict[tuple[int, int], list[int]] = {}
-        self._greatest: dict[tuple[int, int], int] = {}
-        self._ends: dict[tuple[Pairs, int], bool] = {}
-        self._along: dict[Word, list[bytes]] = {}
-        self._undecided: dict[tuple[Pairs, bytes, bytes], Pairs | None] = {}
+        self._after = Remembered(self._pairs_after, None)
+        self._onward = Remembered(self._from, None)
+        self._least = Remembered(self._least_behind, None)
+        self._greatest = Remembered(self._greatest_behind, None)
+        self._ends = Remembered(self._agree, None)
+        self._along = Remembered(self._prospects_along, None)
+        self._undecided = Remembered(_undecided, None)
 
     def starts(self, *, same: bool) -> Pairs:
         """The pairs of start states, optionally only pairs of equal states."""
-        if same not in self._starts:
-            states = self._machine.starts
-            every = sum(1 << state for state in states)
-            rows = {state: 1 << state if same else every for state in states}
-            self._starts[same] = self._furthest(rows)
         return self._starts[same]
+
+    def _start_pairs(self, same: bool) -> Pairs:
+        states = self._machine.starts
+        every = sum(1 << state for state in states)
+        return self._furthest({state: 1 << state if same else every for state in states})
 
     def forget_many(self) -> None:
         """Discard what has been cached, if it is much; the numbers then become invalid."""
@@ -100,12 +101,11 @@ class RunPairs:
 
     def prospects(self, word: Word) -> list[bytes]:
         """For each letter of a word the possible outcomes from each state: see ``Prospects``."""
-        prospects = self._along.get(word)
-        if prospects is None:
-            classes = {number: self._classes.of(self._letters[number]) for number in set(word)}
-            prospects = self._prospects.along([classes[number] for number in word])
-            self._along[word] = prospects
-        return prospects
+        return self._along[word]
+
+    def _prospects_along(self, word: Word) -> list[bytes]:
+        classes = {number: self._classes.of(self._letters[number]) for number in set(word)}
+        return self._prospects.along([classes[number] for number in word])
 
     def undecided(self, pairs: Pairs, first: bytes, second: bytes) -> Pairs | None:
         """The pairs for which it is open which run has the lesser outcome.
@@ -113,66 +113,50 @@ class RunPairs:
         None if for some pair the first run surely has. ``first`` and ``second`` are the outcomes,
         as bits, that the rest of each run's word may have, by state.
         """
-        key = pairs, first, second
-        if key not in self._undecided:
-            self._undecided[key] = _undecided(pairs, first, second)
-        return self._undecided[key]
+        return self._undecided[pairs, first, second]
 
     def choices(self, first: int, second: int, fixed: tuple[int, ...]) -> int:
         """The number of the possible pairs of two letters with equal digits of fixed reads."""
         if first == second:
             # Reads with one digit distinguish nothing.
             fixed = tuple([n for n in fixed if n in self._open[first]])
-        key = first, second, fixed
-        number = self._choices.get(key)
-        if number is None:
-            classes = self._classes.side_by_side(self._letters[first], self._letters[second], fixed)
-            number = self._places.setdefault(classes, len(self._sets))
-            if number == len(self._sets):
-                self._sets.append(classes)
-            self._choices[key] = number
+        return self._choices[first, second, fixed]
+
+    def _choices_left(self, about: tuple[int, int, tuple[int, ...]]) -> int:
+        first, second, fixed = about
+        classes = self._classes.side_by_side(self._letters[first], self._letters[second], fixed)
+        number = self._places.setdefault(classes, len(self._sets))
+        if number == len(self._sets):
+            self._sets.append(classes)
         return number
 
     def after(self, pairs: Pairs, choices: int) -> Pairs:
         """The pairs after one more step."""
-        key = pairs, choices
-        onward = self._after.get(key)
-        if onward is None:
-            rows: dict[int, int] = {}
-            for row in pairs:
-                for state, others in self._onward.get((row, choices)) or self._from(row, choices):
-                    rows[state] = rows.get(state, 0) | others
-            onward = self._after[key] = self._furthest(rows)
-        return onward
+        return self._after[pairs, choices]
 
-    def _from(self, row: tuple[int, int], choices: int) -> list[tuple[int, int]]:
+    def _pairs_after(self, about: tuple[Pairs, int]) -> Pairs:
+        pairs, choices = about
+        rows: dict[int, int] = {}
+        for row in pairs:
+            for state, others in self._onward[row, choices]:
+                rows[state] = rows.get(state, 0) | others
+        return self._furthest(rows)
+
+    def _from(self, about: tuple[tuple[int, int], int]) -> list[tuple[int, int]]:
+        (state, others), choices = about
         rows: dict[int, int] = {}
         for first, second in self._sets[choices]:
-            targets = self._greatest_behind(row[1], second)
-            for target in self._least_behind(row[0], first):
+            targets = self._greatest[others, second]
+            for target in self._least[state, first]:
                 rows[target] = rows.get(target, 0) | targets
-        targets_of = self._onward[row, choices] = list(rows.items())
-        return targets_of
+        return list(rows.items())
 
-    def _least_behind(self, state: int, classes: int) -> list[int]:
-        key = state, classes
-        least = self._least.get(key)
-        if least is None:
-            machine = self._machine
-            targets = _behind(machine, state, classes)
-            least = [*bits_of(machine.least(targets))]
-            self._least[key] = least
-        return least
+    def _least_behind(self, about: tuple[int, int]) -> tuple[int, ...]:
+        return bits_of(self._machine.least(_behind(self._machine, *about)))
 
-    def _greatest_behind(self, states: int, classes: int) -> int:
-        key = states, classes
-        greatest = self._greatest.get(key)
-        if greatest is None:
-            machine, targets = self._machine, 0
-            for state in bits_of(states):
-                targets |= _behind(machine, state, classes)
-            greatest = self._greatest[key] = machine.greatest(targets)
-        return greatest
+    def _greatest_behind(self, about: tuple[int, int]) -> int:
+        machine, (states, classes) = self._machine, about
+        return machine.greatest(_united(_behind(machine, x, classes) for x in bits_of(states)))
 
     def _furthest(self, rows: Mapping[int, int]) -> Pairs:
         """The pairs of states that no other pair dominates.
@@ -206,20 +190,19 @@ class RunPairs:
 
     def agree(self, pairs: Pairs, choices: int) -> bool:
         """Whether, on a last letter, no first run has a lesser outcome than the second."""
-        key = pairs, choices
-        agree = self._ends.get(key)
-        if agree is None:
-            outputs = self._machine.outputs
-            agree = self._ends[key] = all(
-                min([outputs[state][symbol] for symbol in bits_of(first)])
-                >= max([outputs[n][symbol] for n in bits_of(others) for symbol in bits_of(second)])
-                for (state, others), (first, second) in product(pairs, self._sets[choices])
-            )
-        return agree
+        return self._ends[pairs, choices]
+
+    def _agree(self, about: tuple[Pairs, int]) -> bool:
+        outputs, (pairs, choices) = self._machine.outputs, about
+        return all(
+            min([outputs[state][symbol] for symbol in bits_of(first)])
+            >= max([outputs[n][symbol] for n in bits_of(others) for symbol in bits_of(second)])
+            for (state, others), (first, second) in product(pairs, self._sets[choices])
+        )
 
 
-def _undecided(pairs: Pairs, first: bytes, second: bytes) -> Pairs | None:
-    undecided = []
+def _undecided(about: tuple[Pairs, bytes, bytes]) -> Pairs | None:
+    (pairs, first, second), undecided = about, []
     for state, others in pairs:
         own, left = first[state], 0
         # A lower bit means a better outcome.
@@ -271,7 +254,7 @@ class Prospects:
     def _forget(self) -> None:
         self._tables: list[bytes] = []
         self._numbers: dict[bytes, int] = {}
-        self._before: dict[tuple[int, int], int] = {}
+        self._before = Remembered(self._number, None)
 
     def along(self, word: Sequence[int]) -> list[bytes]:
         """For each letter of a word, the outcomes by state of the rest of the word from there on.
@@ -285,10 +268,7 @@ class Prospects:
         for classes, stretch in groupby(reversed(word)):
             length = len(list(stretch))
             for done in range(length):
-                key = here, classes
-                known = self._before.get(key)
-                if known is None:
-                    known = self._before[key] = self._number(here, classes)
+                known = self._before[here, classes]
                 if known == here:
                     # The table repeats itself from here on.
                     backward += [self._tables[here]] * (length - done)
@@ -297,7 +277,8 @@ class Prospects:
                 backward.append(self._tables[here])
         return backward[::-1]
 
-    def _number(self, after: int, classes: int) -> int:
+    def _number(self, about: tuple[int, int]) -> int:
+        after, classes = about
         symbols = [n for n in range(classes.bit_length()) if classes >> n & 1]
         if after < 0:
             columns = {self._outcomes[symbol] for symbol in symbols}

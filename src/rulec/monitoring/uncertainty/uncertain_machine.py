@@ -29,14 +29,13 @@ from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClas
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 from rulec.monitoring.uncertainty.untold_names import RequiredNames
 from rulec.monitoring.verdict import ConditionalOutcome, OpenReasons, OutcomeName, Reason
+from rulec.trace.remembered import Remembered
 
 MOST_OUTCOMES = 1 << 4
 """For so many combinations of values the outcome of an open verdict is listed."""
 
 MOST_STRETCHES = 1 << 10
 """For how many stretches of words the reasons of a rule are cached; long words differ anyway."""
-
-_MOST_REMEMBERED = 1 << 14
 
 _NAMES: Mapping[tuple[int, int], OutcomeName] = {
     (KEPT, KEPT): "kept",
@@ -70,7 +69,7 @@ class UncertainMachine:
         self.classes = LetterClasses(machine)
         self._reasons: dict[object, OpenReasons] = {}
         self._n_stretches = 0
-        self._surely_kept: dict[tuple[int, int], bool] = {}
+        self._surely_kept = Remembered(self._keeps)
         self._required = RequiredNames(machine, self.classes)
 
     @cached_property
@@ -94,17 +93,13 @@ class UncertainMachine:
 
         They end with one of the ``last`` classes. False if there are none.
         """
-        key = letters, last
-        known = self._surely_kept.get(key)
-        if known is None:
-            if len(self._surely_kept) > _MOST_REMEMBERED:
-                self._surely_kept.clear()
-            known = self._surely_kept[key] = bool(last) and self._keeps(letters, last)
-        return known
+        return self._surely_kept[letters, last]
 
-    def _keeps(self, letters: int, last: int) -> bool:
+    def _keeps(self, about: tuple[int, int]) -> bool:
         machine = self.machine
-        symbols, ends = bits_of(letters), bits_of(last)
+        symbols, ends = map(bits_of, about)
+        if not ends:
+            return False
         reached = set(machine.starts)
         for state in (waiting := list(reached)):
             if state in machine.safe:

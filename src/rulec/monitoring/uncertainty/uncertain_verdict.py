@@ -19,8 +19,7 @@ from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.letter_classes import PossibleWord
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
-from rulec.monitoring.uncertainty.supposed_constants import by_name
-from rulec.monitoring.uncertainty.suppositions import Suppositions
+from rulec.monitoring.uncertainty.suppositions import Suppositions, by_name
 from rulec.monitoring.uncertainty.uncertain_machine import (
     Answer,
     UncertainMachine,

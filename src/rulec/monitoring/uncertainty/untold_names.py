@@ -7,7 +7,7 @@ The same holds for types of objects.
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Set
 from dataclasses import replace
 from itertools import chain
 from typing import Any
@@ -17,6 +17,7 @@ from rulec.automata.outcome_machine import VIOLATED, OutcomeMachine, bits_of
 from rulec.monitoring.implied_values import words_meant
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
+from rulec.trace.remembered import Remembered
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 
@@ -32,8 +33,6 @@ compare all states takes longer."""
 
 MOST_REPETITIONS = 1 << 12
 """A letter is repeated at most so often."""
-
-_MOST_REMEMBERED = 1 << 14
 
 
 def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
@@ -81,8 +80,10 @@ class RequiredNames:
         self._values = [_values_of(read) for read in machine.reads]
         names = map(names_of_read, machine.reads)
         self._names = [(*own, *values) for own, values in zip(names, self._values, strict=True)]
-        self._untold: dict[frozenset[str], tuple[str, ...]] = {}
-        self._steps: dict[tuple[int, int, bool], int | None] = {}
+        self._lacking: Remembered[frozenset[str], tuple[str, ...]] = Remembered(
+            lambda names: () if self._can_fire(names) else self._smallest_lack(names)
+        )
+        self._steps = Remembered(self._step)
 
     def missing_of(self, untold: frozenset[str]) -> tuple[str, ...]:
         """Names among these whose absence means that no word can be known to violate the rule.
@@ -90,12 +91,7 @@ class RequiredNames:
         Empty if some word can, whatever values the untold names have.
         """
         names = untold.intersection(chain.from_iterable(self._names))
-        if not names:
-            return ()
-        if names not in self._untold:
-            lacking = () if self._can_fire(names) else self._smallest_lack(names)
-            self._untold[names] = lacking
-        return self._untold[names]
+        return self._lacking[names] if names else ()
 
     def _smallest_lack(self, names: frozenset[str]) -> tuple[str, ...]:
         """A minimal set of untold names that would have to be provided, in the order of reads."""
@@ -136,7 +132,7 @@ class RequiredNames:
             if looked_at > most:
                 return None
             for classes in letters:
-                after = self._after(here, classes, whole=whole)
+                after = self._steps[here, classes, whole]
                 if after is None:
                     return True
                 if after not in reached:
@@ -166,26 +162,19 @@ class RequiredNames:
         met: set[int] = set()
         while here not in met and len(met) < MOST_REPETITIONS:
             met.add(here)
-            after = self._after(here, classes, whole=whole)
+            after = self._steps[here, classes, whole]
             if after is None:
                 return None
             here = after
         return here
 
-    def _after(self, here: int, classes: int, *, whole: bool) -> int | None:
+    def _step(self, about: tuple[int, int, bool]) -> int | None:
         """The least states after a letter of any of these classes; None if all of it violates.
 
         Cached, since runs of letters, the search, and fewer untold names need the same steps.
         """
-        key = here, classes, whole
-        if key not in self._steps:
-            if len(self._steps) > _MOST_REMEMBERED:
-                self._steps.clear()
-            self._steps[key] = self._step(bits_of(here), bits_of(classes), whole=whole)
-        return self._steps[key]
-
-    def _step(self, states: Sequence[int], symbols: Sequence[int], *, whole: bool) -> int | None:
-        machine = self._machine
+        here, classes, whole = about
+        machine, states, symbols = self._machine, bits_of(here), bits_of(classes)
         outputs = [machine.outputs[state] for state in states]
         if all(row[symbol] == VIOLATED for row in outputs for symbol in symbols):
             return None

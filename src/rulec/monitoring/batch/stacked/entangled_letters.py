@@ -88,7 +88,7 @@ def entangled_letters(
         np.array(own, dtype=np.intp)[which],
         tuple(map(letters.letters, keys)),
         tuple([reads.joint_letters[key[-1]][1] for key in keys]),
-        tuple(map(letters.classes_of, keys)),
+        tuple(map(letters.classes.__getitem__, keys)),
     )
 
 

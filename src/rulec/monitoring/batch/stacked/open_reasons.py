@@ -19,7 +19,7 @@ from rulec.monitoring.batch.stacked.stacked_outcomes import StackedWords
 from rulec.monitoring.uncertainty.state_letters.letter_classes import PossibleWord
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
-from rulec.monitoring.uncertainty.supposed_constants import by_name
+from rulec.monitoring.uncertainty.suppositions import by_name
 from rulec.monitoring.uncertainty.within_tolerance import told_within_bounds
 from rulec.monitoring.verdict import OpenReasons
 from rulec.vocabulary.partial_values import UNKNOWN

@@ -27,7 +27,7 @@ from rulec.monitoring.uncertainty.state_letters.related_facts import (
     related_facts,
 )
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
-from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
+from rulec.monitoring.uncertainty.suppositions import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import Answer, UncertainMachine
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Value

@@ -7,18 +7,18 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import partial
 from typing import Any, Final, TypeAlias
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.mealy_monitor import NumberRead
 from rulec.automata.thresholds import EXACT_IN_FLOATS, scale
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import NUMBERS
-from rulec.vocabulary import Declaration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval
-from rulec.vocabulary.vocabulary_model import values_of
+from rulec.monitoring.uncertainty.state_letters.read_digits import ReadDigits
+from rulec.trace.remembered import Remembered
+from rulec.vocabulary import Declaration, Quantity, Signal
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 
 Breakpoints: TypeAlias = Mapping[str, tuple[float, ...] | None]
 """For each quantity the ``floor_of`` every rule's thresholds, ascending; None if all values matter.
@@ -163,99 +163,33 @@ def digits_between(first: int, last: int) -> int | range:
     return first if first == last else range(first, last + 1)
 
 
-DigitWeight: TypeAlias = Callable[[Any], int]
-"""Maps an input's digit to its weight in the number of a letter; LookupError if it has none."""
+def decoded(encoded: Any, floors: Sequence[float] | None) -> PartialValue | None:
+    """A value that rules treat like the one encoded, None if that is missing.
+
+    ``floors`` are the breakpoints of a quantity of which not all values matter.
+    """
+    if encoded is MISSING:
+        return None
+    if encoded is UNKNOWN_DIGIT:
+        return UNKNOWN
+    value: PartialValue = encoded
+    if floors is not None:
+        first, last = (encoded[0], encoded[-1]) if type(encoded) is range else (encoded, encoded)
+        low, high = floors[first - 1], floors[last - 1]
+        value = low if first == last else Interval(low, high)
+    return value
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class MonitorInput:
-    """A read of a rule, with its variables given by their places.
+def digit_table(read: ReadDigits, floors: Sequence[float] | None) -> Remembered[Any, int]:
+    """The digits, as bits, that a read of a single value may have, by the encoded value.
 
-    Equal reads are identical objects.
-
-    ``name`` is the declaration; it is None if ``number`` is a count or a sum, whose ``variables``
-    these are. A number's digit is how many thresholds it passes; the digit of anything else is its
-    value. Unknown values are ``UNKNOWN_DIGIT``; an interval's digits are a ``range``.
+    Raises LookupError if the value is missing.
     """
 
-    name: str | None
-    places: tuple[int, ...]
-    number: NumberRead | None = None
-    variables: tuple[str, ...] = ()
-    _floors: tuple[float, ...] = ()
+    def digits(encoded: Any) -> int:
+        (digits,) = read.of_values([decoded(encoded, floors)])
+        if not digits:
+            raise LookupError
+        return digits
 
-    def digit(self, encoded: Any, breakpoints: Breakpoints) -> Any:
-        """The digit of an encoded value; counts and sums are their own digits.
-
-        Raises TypeError where a number is missing.
-        """
-        if encoded is UNKNOWN or encoded is UNKNOWN_DIGIT:
-            return UNKNOWN_DIGIT
-        if self.name is None or self.number is None:
-            return encoded
-        floors = breakpoints[self.name]
-
-        def own(encoded: Any) -> int:
-            # The floors that a number reaches are those up to the highest common one.
-            reached = encoded if floors is None else floors[encoded - 1]
-            return bisect_right(self._floors, reached)
-
-        if type(encoded) is range:
-            return digits_between(own(encoded[0]), own(encoded[-1]))
-        if type(encoded) is Interval:
-            return digits_between(own(encoded.low), own(encoded.high))
-        return own(encoded)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The names that it depends on."""
-        if self.name is not None:
-            return (self.name,)
-        return () if self.number is None else scale(self.number).names
-
-
-@lru_cache(maxsize=1 << 14)
-def _input(
-    name: str | None,
-    places: tuple[int, ...],
-    number: NumberRead | None = None,
-    variables: tuple[str, ...] = (),
-) -> MonitorInput:
-    # Inputs are looked up very often, and hashing a sum is slow.
-    floors = () if number is None else scale(number).floors
-    return MonitorInput(name, places, number, variables, floors)
-
-
-def monitor_inputs(
-    rule: CompiledRule, vocabulary: Vocabulary
-) -> list[tuple[MonitorInput, DigitWeight]]:
-    """The inputs of a rule, with the weights of their digits."""
-    places = {variable.name: place for place, variable in enumerate(rule.variables)}
-
-    def places_of(variables: Sequence[str]) -> tuple[int, ...]:
-        return tuple([places[variable] for variable in variables])
-
-    inputs: list[tuple[MonitorInput, DigitWeight]] = []
-    stride = 1
-    for read in rule.machine.reads:
-        if isinstance(read, Read):
-            values = values_of(vocabulary.declarations[read.name])
-            weights: dict[Any, int] = {value: stride * read.digit(value) for value in values}
-            inputs.append((_input(read.name, places_of(read.variables)), weights.__getitem__))
-        else:
-            quantity, variables = scale(read).quantity, scale(read).variables
-            if quantity is None:
-                number = _input(None, places_of(variables), read, variables)
-            else:
-                number = _input(quantity.name, places_of(quantity.arguments), read)
-            inputs.append((number, stride.__mul__))
-        stride *= read.size
-    return inputs
-
-
-def value_inputs(
-    rule: CompiledRule, subjects: Sequence[tuple[str, tuple[str, ...]]]
-) -> tuple[MonitorInput, ...]:
-    """Inputs that are values themselves: of names, for a rule's variables."""
-    places = {variable.name: place for place, variable in enumerate(rule.variables)}
-    return tuple([_input(name, tuple([places[x] for x in items])) for name, items in subjects])
+    return Remembered(digits)

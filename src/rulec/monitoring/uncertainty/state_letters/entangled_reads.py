@@ -29,7 +29,6 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import (
 )
 from rulec.monitoring.uncertainty.state_letters.reads_apart import (
     KnownParts,
-    PartNumber,
     ReadsApart,
 )
 from rulec.monitoring.uncertainty.state_letters.related_facts import (
@@ -138,7 +137,6 @@ class EntangledReads:
         self.joint_letters: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}
         self._known: dict[tuple[object, ...], int] = {}
-        self._places: dict[tuple[int, ...], int] = {}
 
     def _are_few_words(self) -> bool:
         """Whether each object of a few may be examined by itself, being counted by words."""
@@ -193,19 +191,6 @@ class EntangledReads:
                 self._known.clear()
             known = self._known[key] = self._place(joint)
         return known
-
-    @property
-    def parts(self) -> Sequence[PartNumber]:
-        """For each part of local reads a getter of its values among all, and their number."""
-        return () if self._apart is None else self._apart.numbers
-
-    def place_of_parts(self, key: tuple[int, ...]) -> int:
-        """The place in ``joint_letters`` for these numbers of the ``parts``."""
-        place = self._places.get(key)
-        if place is None:
-            assert self._apart is not None
-            place = self._places[key] = self._place(self._apart.letters(key))
-        return place
 
     def _place(self, joint: tuple[Letters, bool]) -> int:
         place = self._numbers.setdefault(joint, len(self.joint_letters))

@@ -23,9 +23,6 @@ from rulec.vocabulary import Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, OneOf, PartialValue
 from rulec.vocabulary.vocabulary_model import values_of
 
-MOST_KNOWN = 1 << 14
-"""How many values keep their results before all are discarded."""
-
 MOST_WAYS = 1 << 15
 """The most ways to give subjects values that fit into one set of bits (of 4 kB)."""
 

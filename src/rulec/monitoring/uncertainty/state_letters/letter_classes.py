@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import product
-from typing import TypeVar
+from operator import or_
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.outcome_machine import OutcomeMachine, bits_of
+from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
-from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters, read_digits
+from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, read_digits
+from rulec.trace.remembered import Remembered
+from rulec.vocabulary.partial_values import PartialValue
 
 MOST_KEPT = 1 << 16
 """How many letters keep their classes before all are discarded."""
-
-_Key = TypeVar("_Key")
-_Value = TypeVar("_Value")
 
 
 class LetterClasses:
@@ -26,8 +25,7 @@ class LetterClasses:
 
     def __init__(self, machine: OutcomeMachine) -> None:
         self._machine = machine
-        self._known: dict[Letters, int] = {}
-        self._groups: dict[tuple[Letters, tuple[int, ...]], Mapping[Cube, int]] = {}
+        self._known = Remembered(self._classes, MOST_KEPT)
         self._rules: dict[str, RuleLetters] = {}
 
     @cached_property
@@ -37,13 +35,10 @@ class LetterClasses:
 
     def of(self, letters: Letters) -> int:
         """The classes of letters; 0 if axioms exclude them all."""
-        known = self._known.get(letters)
-        if known is None:
-            known = 0
-            for cube in letters:
-                known |= self.diagram.classes(cube)
-            _keep(self._known, letters, known)
-        return known
+        return self._known[letters]
+
+    def _classes(self, letters: Letters) -> int:
+        return reduce(or_, map(self.diagram.classes, letters), 0)
 
     def of_rule(self, rule: CompiledRule, reads: EntangledReads) -> RuleLetters:
         """The letters of a rule that has this machine, with these entangled reads."""
@@ -56,25 +51,13 @@ class LetterClasses:
         self, left: Letters, right: Letters, fixed: tuple[int, ...]
     ) -> frozenset[tuple[int, int]]:
         """The classes of two letters for each choice of digits of the ``fixed`` reads in both."""
-        if len(left) == len(right) == 1:
-            both = self.diagram.nodes_side_by_side(left[0], right[0], frozenset(fixed))
-            return frozenset([(x >> 1, y >> 1) for x, y in both if x > 1 and y > 1])
-        first, second = self.groups(left, fixed), self.groups(right, fixed)
-        return frozenset([(first[part], second[part]) for part in first.keys() & second])
-
-    def groups(self, letters: Letters, fixed: tuple[int, ...]) -> Mapping[Cube, int]:
-        """The classes of letters by the digits, as bits, of the ``fixed`` reads."""
-        key = letters, fixed
-        if key not in self._groups:
-            groups: dict[Cube, int] = {}
-            for cube in letters:
-                singles = [[1 << bit for bit in bits_of(cube[place])] for place in fixed]
-                for part in product(*singles):
-                    chosen = dict(zip(fixed, part, strict=True))
-                    narrowed = [chosen.get(n, mask) for n, mask in enumerate(cube)]
-                    groups[part] = groups.get(part, 0) | self.diagram.classes(narrowed)
-            _keep(self._groups, key, {part: classes for part, classes in groups.items() if classes})
-        return self._groups[key]
+        same = frozenset(fixed)
+        both = {
+            nodes
+            for first, second in product(left, right)
+            for nodes in self.diagram.nodes_side_by_side(first, second, same)
+        }
+        return frozenset([(x >> 1, y >> 1) for x, y in both if x > 1 and y > 1])
 
 
 @dataclass
@@ -118,24 +101,27 @@ class RuleLetters:
         self.independent = tuple([n for n in own if n not in entangled.numbers])
         # The place of each read among the independent ones, then those of the entangled ones.
         self._order = sorted(own, key=(*self.independent, *entangled.numbers).__getitem__)
-        self._classes = classes
-        self._known: dict[tuple[int, ...], int] = {}
+        self.classes: Remembered[tuple[int, ...], int] = Remembered(
+            lambda key: classes.of(self.letters(key)), MOST_KEPT
+        )
+        """The classes, as bits, of the letters with a key; 0 where axioms exclude them all."""
 
-    def classes(self, keys: Sequence[tuple[int, ...]]) -> list[int]:
-        """The classes, as bits, of letters; 0 where axioms exclude them all."""
-        known = self._known
-        try:
-            return [known[key] for key in keys]
-        except KeyError:
-            return [self.classes_of(key) for key in keys]
+    def possible(
+        self,
+        digits: tuple[int, ...],
+        values: tuple[PartialValue | None, ...],
+        there: Mapping[str, str] | None = None,
+    ) -> tuple[int, bool]:
+        """The classes, as bits, of letters, and whether each of these is possible.
 
-    def classes_of(self, key: tuple[int, ...]) -> int:
-        """The classes, as bits, of the letters with a key."""
-        known = self._known.get(key)
-        if known is None:
-            known = self._classes.of(self.letters(key))
-            _keep(self._known, key, known)
-        return known
+        ``digits`` are those of independent reads, ``values`` those of what entangled ones depend
+        on; see ``EntangledReads.number``. Raises MissingValueError.
+        """
+        if not self.entangled.numbers:
+            return self.classes[digits], True
+        place = self.entangled.number(values, there)
+        key = *digits, place
+        return self.classes[key], self.entangled.joint_letters[place][1]
 
     def letters(self, key: tuple[int, ...]) -> Letters:
         """The letters with a key."""
@@ -144,9 +130,3 @@ class RuleLetters:
         cubes, _ = self.entangled.joint_letters[key[-1]]
         alone, order = key[:-1], self._order
         return tuple([tuple([(*alone, *cube)[n] for n in order]) for cube in cubes])
-
-
-def _keep(known: dict[_Key, _Value], key: _Key, value: _Value) -> None:
-    if len(known) >= MOST_KEPT:
-        known.clear()
-    known[key] = value

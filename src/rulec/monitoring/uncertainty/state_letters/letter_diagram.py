@@ -14,6 +14,7 @@ from itertools import chain, count
 from math import prod
 
 from rulec.automata.outcome_machine import OutcomeMachine, bits_of
+from rulec.trace.remembered import Remembered
 
 MOST_STEPS = 1 << 18
 """How many steps of one letter are kept before all are discarded."""
@@ -45,7 +46,7 @@ class LetterDiagram:
             # One more than the class; 0 stands for letters that axioms exclude.
             self._children[0] = [tuple([letter + 1 for letter in row]) for row in self._children[0]]
         self.start = 1 << (below[0] if self._children else below[0] + 1)
-        self._steps: dict[tuple[int, int, int], int] = {}
+        self._steps = Remembered(self._step, MOST_STEPS)
 
     def _add_level(self, below: Sequence[int], size: int) -> list[int]:
         rows, above = _distinct_rows(below, size)
@@ -95,18 +96,15 @@ class LetterDiagram:
 
     def step(self, read: int, here: int, digits: int) -> int:
         """The nodes after some nodes and some digits of a read, all as bits."""
-        key = read, here, digits
-        known = self._steps.get(key)
-        if known is None:
-            if len(self._steps) >= MOST_STEPS:
-                self._steps.clear()
-            children = self._children[read]
-            known = 0
-            for node in bits_of(here):
-                for digit in bits_of(digits):
-                    known |= 1 << children[node][digit]
-            self._steps[key] = known
-        return known
+        return self._steps[read, here, digits]
+
+    def _step(self, key: tuple[int, int, int]) -> int:
+        read, here, digits = key
+        children, after = self._children[read], 0
+        for node in bits_of(here):
+            for digit in bits_of(digits):
+                after |= 1 << children[node][digit]
+        return after
 
 
 def _distinct_rows(numbers: Sequence[int], width: int) -> tuple[list[tuple[int, ...]], list[int]]:

@@ -37,6 +37,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
 )
 from rulec.trace import Trace, Value
 from rulec.trace.interned import Interned
+from rulec.trace.remembered import Remembered
 from rulec.trace.trace_model import present_in
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
@@ -133,8 +134,10 @@ class PossibleLetters:
         self._vocabulary = vocabulary
         self._where = where
         self._views: dict[tuple[object, ...], StateView] = {}
-        self._named: dict[str, list[Any]] = {}
-        self._given: dict[Subject, list[PartialValue | None]] = {}
+        self._named: Remembered[str, list[Any]] = Remembered(
+            lambda name: [state.get(name) for state in trace.states]
+        )
+        self._given = Remembered(self._values, None)
         self._columns: dict[tuple[object, ...], _Column] = {}
         self._distinct_columns: dict[tuple[int, ...], _Column] = {}
         self._classes: dict[tuple[object, ...], tuple[int, ...]] = {}
@@ -179,7 +182,7 @@ class PossibleLetters:
         # Among many objects, most are alike for a rule
         alike = Interned(letters), length, *[own.number for own in columns]
         if alike not in self._classes:
-            self._classes[alike] = tuple(letters.classes(keys()))
+            self._classes[alike] = tuple(map(letters.classes.__getitem__, keys()))
         return PossibleWord(
             self._classes[alike],
             is_exact,
@@ -223,21 +226,15 @@ class PossibleLetters:
         """The value of a name in every state, defaults included; None if it is missing."""
         if (name, items) in supposed:
             return [supposed[name, items]] * len(self._trace.states)
-        if (name, items) not in self._given:
-            default: Any = self._vocabulary.declarations[name].default
-            given: Any = self._of_name(name)
-            for item in items:
-                given = [x if x is None or x is UNKNOWN else x.get(item) for x in given]
-            if None in given:
-                given = [default if value is None else value for value in given]
-            self._given[name, items] = given
         return self._given[name, items]
 
-    def _of_name(self, name: str) -> list[Any]:
-        """What each state gives for a name, about whichever objects."""
-        if name not in self._named:
-            self._named[name] = [state.get(name) for state in self._trace.states]
-        return self._named[name]
+    def _values(self, subject: Subject) -> list[PartialValue | None]:
+        name, items = subject
+        default: Any = self._vocabulary.declarations[name].default
+        given: Any = self._named[name]
+        for item in items:
+            given = [x if x is None or x is UNKNOWN else x.get(item) for x in given]
+        return [default if value is None else value for value in given] if None in given else given
 
     def _distinct(self, items: Sequence[int]) -> _Column:
         """The one column with these items."""

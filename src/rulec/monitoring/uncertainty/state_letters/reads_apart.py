@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import product
 from math import prod
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
@@ -28,7 +28,6 @@ from rulec.monitoring.uncertainty.state_letters.completions.completions import (
 )
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import (
-    MOST_KNOWN,
     JointValues,
     values_at,
 )
@@ -41,6 +40,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_in,
     subjects_of_read,
 )
+from rulec.trace.remembered import Remembered
 from rulec.valuations.connections import connected
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, OneOf, PartialValue
@@ -66,13 +66,6 @@ class _Part(NamedTuple):
     table: _PartTable
 
 
-PartNumber: TypeAlias = "tuple[Callable[[Any], tuple[Any, ...]], Callable[[tuple[Any, ...]], int]]"
-"""A getter of a part's values among all, and a function that gives their number.
-
-Raises MissingValueError.
-"""
-
-
 class KnownParts:
     """The cached ``tables`` of the parts of all rules."""
 
@@ -84,8 +77,7 @@ class ReadsApart:
     """The reads of one rule that depend on these ``subjects``, in parts.
 
     They are evaluated for the objects of a ``binding``, with ``everybody`` present. Parts that
-    differ only in the names of objects share their ``known`` results. ``numbers`` has for each part
-    a getter of its subjects' values, and a function that gives their number in a ``key``.
+    differ only in the names of objects share their ``known`` results.
 
     ``counts_divided``: what decides whether an object counts is a part of its own, and the values
     of the world in such counts are supposed, one choice after the other; they must be words.
@@ -114,33 +106,29 @@ class ReadsApart:
             if subject in world and not subject[1]
         }
         self._parts = tuple(self._apart(pieces, list(instances_of(axioms, everybody))))
-        self.numbers = tuple([(part.values, part.table.number) for part in self._parts])
-        self._letters: dict[tuple[tuple[int, ...], bool], tuple[Letters, bool]] = {}
+        self._letters = Remembered(self._joint_letters)
 
     def key(self, values: Sequence[PartialValue | None]) -> tuple[int, ...]:
         """The key of the letters for these values of the subjects.
 
         Raises MissingValueError, not necessarily about the first missing value.
         """
-        return tuple([number(pick(values)) for pick, number in self.numbers])
+        return tuple([part.table.numbers[part.values(values)] for part in self._parts])
 
     def letters(self, key: tuple[int, ...], *, supposed: bool = False) -> tuple[Letters, bool]:
         """The joint letters of a key, and whether each of them is possible.
 
         Unless values are ``supposed``, a state whose reads are all known is taken to be possible.
         """
-        known = self._letters.get((key, supposed))
-        if known is None:
-            if len(self._letters) >= MOST_KNOWN:
-                self._letters.clear()
-            parts = [part.table.possible[n] for part, n in zip(self._parts, key, strict=True)]
-            sure = [[own.known] for own in parts if own.known is not None]
-            if supposed or len(sure) < len(parts):
-                known = self._joint([own.joint for own in parts]), all(own.exact for own in parts)
-            else:
-                known = self._joint(sure), True
-            self._letters[key, supposed] = known
-        return known
+        return self._letters[key, supposed]
+
+    def _joint_letters(self, about: tuple[tuple[int, ...], bool]) -> tuple[Letters, bool]:
+        key, supposed = about
+        parts = [part.table.possible[n] for part, n in zip(self._parts, key, strict=True)]
+        sure = [[own.known] for own in parts if own.known is not None]
+        if supposed or len(sure) < len(parts):
+            return self._joint([own.joint for own in parts]), all(own.exact for own in parts)
+        return self._joint(sure), True
 
     def letters_of(self, values: Sequence[PartialValue | None]) -> tuple[Letters, bool]:
         """The joint letters for these values of the subjects, and whether each is possible.
@@ -293,19 +281,15 @@ class _PartTable:
         self._objects, self._vocabulary = objects, vocabulary
         self.possible: list[_PartDigits] = []
         self._numbers: dict[_PartDigits, int] = {}
-        self._known: dict[tuple[object, ...], int] = {}
+        self.numbers = Remembered(self._number)
+        """The places among ``possible`` by values. Raises MissingValueError."""
 
-    def number(self, values: tuple[PartialValue | None, ...]) -> int:
-        """The place among ``possible`` of the digits for these values. Raises MissingValueError."""
-        known = self._known.get(values)
-        if known is None:
-            if len(self._known) >= MOST_KNOWN:
-                self._known.clear()
-            possible = self._possible(values)
-            known = self._known[values] = self._numbers.setdefault(possible, len(self.possible))
-            if known == len(self.possible):
-                self.possible.append(possible)
-        return known
+    def _number(self, values: tuple[PartialValue | None, ...]) -> int:
+        possible = self._possible(values)
+        number = self._numbers.setdefault(possible, len(self.possible))
+        if number == len(self.possible):
+            self.possible.append(possible)
+        return number
 
     @cached_property
     def _joint_values(self) -> JointValues | None:

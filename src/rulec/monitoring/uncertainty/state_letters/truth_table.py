@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
-from rulec.logic.fold import Algebra, fold
+from rulec.logic.fold import fold
 from rulec.logic.kleene import Unknown
 from rulec.logic.linear_comparison import stands
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
@@ -20,6 +20,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
 )
 from rulec.trace import Value
 from rulec.trace.partly_known.partly_known_values import Truth
+from rulec.trace.partly_known.temporal_operators import BitInstants
 
 Bits: TypeAlias = int
 """A set of ways to give all subjects values."""
@@ -63,7 +64,6 @@ class TruthTable:
 
     def truth(self, formula: ltl.Formula, environment: Mapping[str, str]) -> Truth[int]:
         """Where a formula holds for the objects of an environment."""
-        every = Truth.known(self.all)
 
         def proposition(own: ltl.Proposition) -> Truth[int]:
             if isinstance(own, ltl.Comparison):
@@ -79,18 +79,11 @@ class TruthTable:
                 return Truth(0, self.all)
             return Truth.known(self.all * (value == wanted))
 
-        algebra = Algebra(
-            proposition=proposition,
-            identity=lambda same: Truth.known(
-                self.all * (environment[same.left] == environment[same.right])
-            ),
-            constant=lambda value: Truth.known(self.all * value),
-            negation=lambda truth: ~truth & every,
-            conjunction=Truth.__and__,
-            disjunction=Truth.__or__,
-            equivalence=lambda left, right: left.same_as(right) & every,
-        )
-        return fold(formula, algebra)
+        def identity(same: ltl.Same) -> Truth[int]:
+            return Truth.known(self.all * (environment[same.left] == environment[same.right]))
+
+        ways = BitInstants(self.all.bit_length(), "over")
+        return fold(formula, ways.algebra(proposition, identity)) & Truth.known(self.all)
 
     def counted(self, formula: ltl.Formula, environment: Mapping[str, str]) -> Mapping[int, Bits]:
         """Whether an object counts, 1 or 0, with the ways. Raises MissingValueError."""
