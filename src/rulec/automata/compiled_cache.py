@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.bundle.cut_machines import StoredPrefixes, stored
+from rulec.automata.bundle.cut_machines import StoredPrefixes
 from rulec.automata.bundle.mapped_rulebook import COMPILATIONS, Compilation
 from rulec.cache.cache_folder import tidy, usable_folder, write_own
 from rulec.cache.mapped_tables import mapped
@@ -233,14 +233,13 @@ class CachedPrefixes:
         # The compiler takes 30 ms to import: only where the cache has no machines.
         from rulec.automata.prefix_machines import prefix_machines, timed_cuts
 
-        machines = prefix_machines(replace(rulebook, rules=rules), self._steps.time)
-        added = stored(replace(rulebook, rules=rules, prefixes=lambda _: machines), timed_cuts)
+        lacking = replace(rulebook, rules=rules)
+        machines = prefix_machines(lacking, self._steps.time)
         whole = self._file.read()
-        if added is not None and whole is not None and whole.rulebook is not None:
+        if whole is not None and whole.rulebook is not None:
+            ordered = {name: own and own.in_order() for name, own in machines.items()}
             self._stored = known = StoredPrefixes(
-                {**known.entries, **added.entries},
-                {**known.orders, **added.orders},
-                {**known.timed, **added.timed},
+                {**known.entries, **ordered}, {**known.timed, **timed_cuts(lacking)}
             )
             if {rule.name for rule in whole.rulebook.rules}.issuperset(known.entries):
                 self._file.write(whole, replace(whole.rulebook, prefixes=known))

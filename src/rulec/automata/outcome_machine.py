@@ -8,7 +8,7 @@ kept whose possible outcomes are the least or the greatest: the others stay betw
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Literal, TypeAlias
 
@@ -84,6 +84,14 @@ class OutcomeMachine:
                 for start in range(0, len(self.order), width)
             ]
         )
+
+    def in_order(self) -> OutcomeMachine:
+        """The machine with its ``order``."""
+        if self.order is not None:
+            return self
+        width = (len(self.successors) + 7) // 8
+        rows = [above.to_bytes(width, "little") for above in self.above]
+        return replace(self, order=b"".join(rows))
 
     @property
     def _found_order(self) -> tuple[int, ...]:
@@ -230,8 +238,8 @@ def of_prefixes(
             lost = target[0] == machine.rejecting_sink and not machine.outputs[own][symbol]
             kept = finite.outputs[other][finite_symbol]
             outcomes.append(VIOLATED if lost else KEPT if kept else PENDING)
-        successors.append(row)
-        outputs.append(outcomes)
+        successors.append(tuple(row))
+        outputs.append(tuple(outcomes))
     letters = tuple(
         [
             classes.get(pair, IMPOSSIBLE)
@@ -239,7 +247,7 @@ def of_prefixes(
         ]
     )
     first = frozenset(places[pair] for pair in starts)
-    return OutcomeMachine(machine.reads, letters, successors, outputs, first)
+    return OutcomeMachine(machine.reads, letters, tuple(successors), tuple(outputs), first)
 
 
 @dataclass(frozen=True, slots=True)
