@@ -338,7 +338,8 @@ class Stack(TracePlaces):
         if len(kinds) == 1:
             return self.of_type(kinds[0]).repeat(self.n_cells)
         first, second = self.pairs.objects.T
-        suits = self.of_type(kinds[0])[first] & self.of_type(kinds[1])[second] & (first != second)
+        suits: Flags = (first != second) & self.of_type(kinds[0])[first]
+        suits &= self.of_type(kinds[1])[second]
         return suits.repeat(np.diff(self.pairs.starts))
 
     def _places(self, name: str, declaration: Enumeration, parts: Sequence[Array]) -> Array:
