@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from itertools import groupby
 from typing import Literal, TypeAlias
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
@@ -125,22 +126,8 @@ class OutcomeMachine:
         members = frozenset(states)
         if len(members) < 3:
             return members
-        above, below = self.above, self.below
-        bits = sum(1 << state for state in members)
-        # A product may have equivalent states.
-        first = [
-            state
-            for state in members
-            if not above[state] & below[state] & bits & ((1 << state) - 1)
-        ]
-        bits = sum(1 << state for state in first)
-        return frozenset(
-            [
-                state
-                for state in first
-                if above[state] & bits == 1 << state or below[state] & bits == 1 << state
-            ]
-        )
+        bits = sum([1 << state for state in members])
+        return frozenset(bits_of(self.least(bits) | self.greatest(bits)))
 
 
 @lru_cache(maxsize=1 << 14)
@@ -292,15 +279,7 @@ class SetMonitor:
 
         The third item is the index of the letter after which every completion was lost, or None.
         """
-        here, lost = self.start, self.machine.lost
-        step = OutcomeRange(here, KEPT, KEPT)
-        steps = self._steps
-        for index, classes in enumerate(word):
-            step = steps.get((here, classes)) or self.step(here, classes)
-            here = step.states
-            if step.best == VIOLATED and lost.issuperset(self._sets[here]):
-                return VIOLATED, VIOLATED, index
-        return step.best, step.worst, None
+        return self.run_stretches((classes, len(list(own))) for classes, own in groupby(word))
 
     def run_stretches(self, stretches: Iterable[tuple[int, int]]) -> tuple[int, int, int | None]:
         """``run`` of a word given as pairs of a set of classes and its number of repetitions."""
