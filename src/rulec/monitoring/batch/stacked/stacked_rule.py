@@ -157,6 +157,7 @@ class StackedRule:
         self._fit_bits = machine.machine.n_classes <= _MOST_BITS
         self.letters = self._no_letters()
         self._answers: dict[bytes, Answer] = {}
+        self._words: dict[bytes, Answer | None] = {}
         self._bytes = 0
         self._vocabulary = vocabulary
         self._everybody: dict[str, str] = {}
@@ -200,7 +201,7 @@ class StackedRule:
     def forget_many(self) -> None:
         """Discard the known letter sets if there are many; their numbers become invalid."""
         if len(self.letters.sets) > MOST_SETS:
-            self.letters, self._answers = self._no_letters(), {}
+            self.letters, self._answers, self._words = self._no_letters(), {}, {}
             self._busy_flags = np.zeros(0, dtype=bool)
             self._class_bits = np.zeros(0, dtype=np.uint64)
 
@@ -252,19 +253,23 @@ class StackedRule:
 
         None if axioms exclude one of them.
         """
+        key = letters.tobytes()
+        if key in self._words:
+            return self._words[key]
         rows, _ = stretches(letters, np.array([0, len(letters)], dtype=np.intp))
         sets = self.letters.sets
-        return self.answer(rows) if all(sets[n] for n in rows[:, 0].tolist()) else None
+        answer = self.answer(rows) if all(sets[n] for n in rows[:, 0].tolist()) else None
+        if len(key) <= MOST_BYTES >> 10:
+            self._make_room(len(key))
+            self._words[key] = answer
+        return answer
 
     def answer(self, rows: NDArray[np.intp]) -> Answer:
         """The answer for a word, given as rows of a letter set's number and its repetitions."""
         key = rows.tobytes()
         answer = self._answers.get(key)
         if answer is None:
-            self._bytes += len(key)
-            if self._bytes > MOST_BYTES:
-                self._answers.clear()
-                self._bytes = len(key)
+            self._make_room(len(key))
             sets = self.letters.sets
             word = ((sets[number], length) for number, length in rows.tolist())
             answer = self._answers[key] = Answer(*self.machine.monitor.run_stretches(word))
@@ -281,6 +286,13 @@ class StackedRule:
             self._answers.get(key) or self.answer(rows[ends[place] : ends[place + 1]])
             for key, place in zip(keys, places, strict=True)
         ]
+
+    def _make_room(self, n_bytes: int) -> None:
+        self._bytes += n_bytes
+        if self._bytes > MOST_BYTES:
+            self._answers.clear()
+            self._words.clear()
+            self._bytes = n_bytes
 
 
 def stretches(
