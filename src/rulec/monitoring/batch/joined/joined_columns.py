@@ -181,9 +181,9 @@ def joined_rows(
 
 def _given(items: Indices, firsts: Indices) -> Indices | None:
     """The numbers of the objects of rows; None for none. UnencodableError if only some have one."""
-    if (items == NOBODY).all():
+    if items.max(initial=NOBODY) == NOBODY:
         return None
-    if (items == NOBODY).any():
+    if items.min() == NOBODY:
         raise UnencodableError
     return items + firsts
 
