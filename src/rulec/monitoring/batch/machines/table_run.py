@@ -128,6 +128,7 @@ def first_lost(
     cells: Array,
     layout: Layout,
     chosen: NDArray[np.intp],
+    *,
     stretch: tuple[int, int | None],
 ) -> NDArray[np.int64]:
     """The step at which each of the ``chosen`` traces is lost in a stretch; -1 if it is not.
