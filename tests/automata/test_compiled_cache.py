@@ -3,6 +3,7 @@
 import os
 import pickle
 from contextlib import contextmanager
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -13,7 +14,8 @@ from rulec.api import rulebook_compilation
 from rulec.api.rulebook_compilation import machines
 from rulec.automata import compiled_cache, compiler, prefix_machines
 from rulec.cache.cache_folder import cache_folder
-from rulec.cache.mapped_tables import MappedTables, TableWriter, mapped
+from rulec.cache.kept_bytes import KeptBytes
+from rulec.cache.row_tables import RowTables, TableWriter
 from rulec.diagnostics import RulecError
 from rulec.rulebook.reading import reading_cache
 from rulec.rulebook.reading.rulebook_reader import load_rulebook
@@ -127,7 +129,7 @@ def test_what_another_step_has_alike_is_there_once(folder):
     assert first[0] is first[1]
     assert second[0] != second[1]
     assert own.at_step(Fraction(1, 10)).vocabulary is own.vocabulary
-    alone, beside = (path.stat().st_size for path in reversed(kept()))
+    beside, alone = sorted(path.stat().st_size for path in kept())
     assert beside < alone
 
 
@@ -188,7 +190,7 @@ def test_the_day_counts_where_the_rulebook_says_none(folder, made, monkeypatch):
         lambda path: path.write_bytes(b""),
         lambda path: path.write_bytes(path.read_bytes()[:-9]),
         lambda path: path.write_bytes(path.read_bytes()[:20]),
-        lambda path: path.write_bytes(path.read_bytes().replace(b"second", b"third!")),
+        lambda path: path.write_bytes(path.read_bytes()[::-1]),
         lambda path: path.write_bytes(TableWriter().file(b"{}")),
         lambda path: path.write_bytes(TableWriter().file(b"\xff")),
     ],
@@ -229,7 +231,8 @@ def test_without_a_folder_to_write_to_it_is_compiled_each_time(folder, made, tmp
 
 
 def test_few_files_are_kept(folder, monkeypatch):
-    monkeypatch.setattr(compiled_cache, "MOST_FILES", 3)
+    few = replace(compiled_cache._COMPILED, files=KeptBytes("tables", 3, always=True))
+    monkeypatch.setattr(compiled_cache, "_COMPILED", few)
     book = compiled()
     for number, step in enumerate((1, 0.5, 0.25, 0.125)):
         for path in kept():
@@ -245,14 +248,12 @@ def test_a_pickled_one_still_asks_the_cache(folder, no_worker):
     assert book.at_step(0.5) == compiled().at_step(0.5)
 
 
-def test_a_row_is_what_was_placed(tmp_path):
+def test_a_row_is_what_was_placed():
     tables = TableWriter()
     written = [(1, -1, 0), (), (1 << 40, -(1 << 40)), (127, 128), (1, -1, 0)]
     places = [tables.place(row) for row in written]
     assert places[0] == places[-1]
-    path = tmp_path / "x.tables"
-    path.write_bytes(tables.file(b"text"))
-    read = mapped(path)
+    read = RowTables(tables.file(b"text"))
     assert read.text == b"text"
     assert [read.row(place) for place in places] == written
     assert read.rows(places[2], 1) == ((1 << 40,), (-(1 << 40),))
@@ -264,15 +265,17 @@ def test_a_row_is_what_was_placed(tmp_path):
         read.row(("b", -1, 1))
 
 
-def test_every_bit_of_a_file_counts():
-    tables = TableWriter()
-    tables.place((1, 2, 3))
-    data = tables.file(b"text")
-    for number in range(8 * len(data)):
-        changed = bytearray(data)
+def test_every_bit_of_a_file_counts(folder):
+    kept_bytes, data = KeptBytes("bits", 1, always=True), TableWriter().file(b"text")
+    kept_bytes.keep({"key": data})
+    assert kept_bytes.recall("key") == data
+    (path,) = cache_folder().glob("*.bits")
+    written = path.read_bytes()
+    for number in range(8 * len(written)):
+        changed = bytearray(written)
         changed[number // 8] ^= 1 << number % 8
-        with pytest.raises(ValueError, match="it is"):
-            MappedTables(bytes(changed))
+        path.write_bytes(bytes(changed))
+        assert kept_bytes.recall("key") is None
 
 
 STEPS = [None, 0.5, Fraction(1, 10)]

@@ -11,7 +11,6 @@ from hypothesis import Phase, given, settings
 import rulec
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
-from rulec.monitoring.batch.alike_traces import AlikeTraces
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
@@ -180,16 +179,13 @@ def test_columns_of_one_shape(ends, change):
     assert len(own) > 10
     group = group_traces([in_the_names_of(own[0], trace) for trace in own])
     ordered = [own[place] for place in group.order]
-    alike = AlikeTraces(
-        places=group.order,
-        columns=columnize(group.cells, compiled.vocabulary),
-        ids=lambda number: ordered[number].id,
-        names=lambda number: tuple(ordered[number].objects),
-        says=lambda number, name: any(name in state for state in ordered[number].states),
-        traces=ordered.__getitem__,
-        ends=ends,
+    joined = joined_columns(columnize(group.cells, compiled.vocabulary), compiled.vocabulary)
+    joined = replace(
+        joined,
+        kind=joined.kind._replace(ends=ends),
+        names=[item for trace in ordered for item in trace.objects],
+        trace=ordered.__getitem__,
     )
-    joined = joined_columns(alike, compiled.vocabulary)
     verdicts = judged(joined, ordered, compiled)
     assert len(verdicts) == len(own)
     same_as_alone(verdicts, ordered, compiled)
@@ -243,3 +239,24 @@ def test_traces_that_contradict_facts(most):
         answers = list(verify_many(own, compiled))
     assert answers == [verify_or_reason(one, compiled) for one in own]
     assert any(answer.violations for answer in answers if not isinstance(answer, NotJudged))
+
+
+KINDS = """rulebook kinds
+type car
+type person
+signal lit(v: car)
+signal waits(p: person)
+signal sees(v: car, p: person)
+hard rule light (v: car) { require always lit(v) }
+hard rule patient (p: person) { require always waits(p) }
+hard rule seen (v: car, p: person) { require always sees(v, p) }
+"""
+
+
+def test_values_that_objects_of_other_types_cannot_have_are_not_missing():
+    compiled = compile_here(parse_rulebook(KINDS))
+    state = {"lit": {"c": True}, "waits": {"p": False}, "sees": {"c": {"p": True}}}
+    own = [Trace("t", 1.0, {"c": "car", "p": "person"}, (state, state))]
+    verdicts = judged(joined_states(own, compiled.vocabulary), own, compiled)
+    assert [one.rule for one in verdicts[0].violations] == ["patient"]
+    same_as_alone(verdicts, own, compiled)

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from rulec.monitoring.batch.machines.joint_machine import JointMachine
 from rulec.monitoring.batch.machines.multi_step_tables import (
     _lengths,
-    is_cheaper,
     run_multi_step,
     steps_of,
 )
@@ -59,9 +58,8 @@ def test_verdicts_are_those_of_the_words(n_states, n_letters, n_traces, longest,
     words = words_of(chance, n_traces, n_letters, longest, n_lengths)
     layout = layout_of(list(map(len, words)))
     letters = column_of(words, layout, np.uint8)
-    if is_cheaper(n_states, n_letters, n_traces):
-        found = run_multi_step(following, verdicts, letters, steps_of(layout, 0, None))
-        assert found.tolist() == walked(following, verdicts, words)
+    found = run_multi_step(following, verdicts, letters, steps_of(layout, 0, None))
+    assert found.tolist() == walked(following, verdicts, words)
 
 
 @given(st.integers(1, 40), st.integers(1, 9), st.integers(1, 9))

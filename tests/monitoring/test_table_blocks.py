@@ -18,7 +18,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.automata.bundle.bundle_file import to_json
-from rulec.monitoring.batch import batch_verify
 from rulec.monitoring.batch.batch_verify import rulebook_for, verify_items
 from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
@@ -52,7 +51,6 @@ def by_columns(data, form, rules, block_bytes=1 << 22):
         mock.patch.object(csv_table, "LARGE_BYTES", 1),
         mock.patch.object(plain_csv, "_BLOCK_BYTES", block_bytes),
         mock.patch.object(parquet_table, "_ROWS_AT_ONCE", 1 + block_bytes // 40),
-        mock.patch.object(batch_verify, "_FEWEST_ROWS", 0),
     ):
         return answers(data, form, rules)
 

@@ -10,7 +10,7 @@ import pytest
 from rulec.cache import kept_bytes
 from rulec.cache.cache_folder import cache_folder
 from rulec.cache.keeping import keeping
-from rulec.cache.mapped_tables import MappedTables, TableWriter
+from rulec.cache.row_tables import RowTables, TableWriter
 from rulec.cache.stored_objects import DAMAGED, ObjectCodec, kinds_of_fields
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.rulebook import loader
@@ -219,7 +219,7 @@ def test_parts_that_are_none_are_refused(text, parts):
     tables = TableWriter()
     tables.place(parts)
     with pytest.raises(DAMAGED):
-        ObjectCodec(RULE_KINDS).read(MappedTables(tables.file(text)))
+        ObjectCodec(RULE_KINDS).read(RowTables(tables.file(text)))
 
 
 def test_a_mistake_is_reported_as_without_the_cache(folder):

@@ -7,7 +7,7 @@ import pytest
 from rulec.cache import kept_bytes
 from rulec.cache.cache_folder import cache_folder
 from rulec.cache.keeping import keeping
-from rulec.cache.mapped_tables import MappedTables
+from rulec.cache.row_tables import RowTables
 from rulec.diagnostics import Source, Span
 from rulec.resources import rulebooks_folder
 from rulec.syntax import parse, tree
@@ -63,7 +63,7 @@ def test_data_of_a_tree_has_all_of_it(name):
     file, mistakes = parse(source)
     assert mistakes == ()
     data = written(file, source)
-    again = TREES.read(MappedTables(data), (source, tree.NOWHERE))
+    again = TREES.read(RowTables(data), (source, tree.NOWHERE))
     assert again == file
     assert written(again, source) == data
 

@@ -13,7 +13,6 @@ from rulec.api.named_monitor import Monitor
 from rulec.automata.compiler import compile_rulebook
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch import batch_verify
 from rulec.monitoring.batch.batch_verify import verify_items
 from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.moments.name_tables import tables_of
@@ -87,7 +86,6 @@ def test_a_number_counts_as_it_is_written(rules, numbers):
         assert violated(judged(traces, rules)) == expected
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(csv_table, "LARGE_BYTES", 0)
-        patch.setattr(batch_verify, "_FEWEST_ROWS", 0)
         chunks = list(read_chunks(io.BytesIO(table.encode()), "t", "csv"))
         found = [answer for chunk in chunks for answer in judged(chunk, rules)]
         assert violated(found) == expected

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from rulec.automata import alphabet
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
+from rulec.logic.fold import bit_sets, fold
 from rulec.rulebook.rules.axiom_instances import AxiomInstance, linked, subjects_of
 from rulec.vocabulary import Vocabulary
 
@@ -53,24 +54,4 @@ def axiom_groups(
 def possible_letters(reads: Sequence[Read | NumberRead], known: ltl.Formula) -> int:
     """The bit set of the letters in which a formula without temporal operators holds."""
     sets = alphabet.letters_with(reads, alphabet.propositions_of(known))
-    return _letters_where(known, sets, everything=(1 << alphabet.count_letters(reads)) - 1)
-
-
-def _letters_where(
-    formula: ltl.Formula, sets: Mapping[ltl.Proposition, int], everything: int
-) -> int:
-    match formula:
-        case ltl.Atom() | ltl.Comparison():
-            return sets[formula]
-        case ltl.Constant(value):
-            return everything if value else 0
-        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
-            return everything & ~_letters_where(operand, sets, everything)
-        case ltl.Binary(operator, left, right):
-            first = _letters_where(left, sets, everything)
-            second = _letters_where(right, sets, everything)
-            if operator is alphabet.AND:
-                return first & second
-            if operator is alphabet.OR:
-                return first | second
-    raise TypeError("what is known is said by `not`, `and` and `or`")
+    return fold(known, bit_sets(sets, (1 << alphabet.count_letters(reads)) - 1))

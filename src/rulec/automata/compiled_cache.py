@@ -1,26 +1,21 @@
 """Cache of compiled rulebooks, valid while everything that they were compiled from is unchanged.
 
-One file for each rulebook and step, beside all else that is cached. If a file is unusable,
-the rulebook is compiled again. Machines for cut traces are added to the file once made.
+One entry for each rulebook and step; programs that import rulec keep them, too. Machines for cut
+traces are added once made.
 """
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from hashlib import sha256
-from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.bundle.cut_machines import StoredPrefixes, stored
-from rulec.automata.bundle.mapped_rulebook import COMPILATIONS, Compilation
-from rulec.cache.cache_folder import tidy, usable_folder, write_own
-from rulec.cache.mapped_tables import mapped
-from rulec.cache.stored_objects import DAMAGED
+from rulec.automata.bundle.cut_machines import StoredPrefixes
+from rulec.automata.bundle.stored_rulebook import COMPILATIONS, Compilation
+from rulec.cache.kept_bytes import KeptBytes
+from rulec.cache.stored_objects import KeptObjects
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.resource_limits import CompilerTime
 from rulec.rulebook.files.search_path import Dependency
@@ -37,7 +32,8 @@ _Part = TypeVar("_Part")
 MOST_FILES = 100
 """The greatest number of files kept; those unused for the longest time are removed first."""
 
-_ENDING = ".tables"
+_COMPILED = KeptObjects(KeptBytes("tables", MOST_FILES, always=True), COMPILATIONS)
+
 _OWN = "own"
 """In place of a step: the steps of the rules' own examples."""
 
@@ -46,7 +42,7 @@ def recalled(
     question: BookQuestion,
 ) -> tuple[CompiledRulebook, tuple[Diagnostic, ...]] | None:
     """The cached rulebook with its warnings; None if it has to be compiled."""
-    file = _File(question, _OWN)
+    file = _Entry(question, _OWN)
     known = file.read()
     if known is None or known.rulebook is None or known.basis.texts(question) is None:
         return None
@@ -65,47 +61,34 @@ def remembered(
     """Cache a newly compiled rulebook; what is later compiled from it is cached, too."""
     basis = basis_of(question, dependencies, compiled.as_of)
     text = Compilation(basis, warnings=tuple(warnings))
-    file = _File(question, _OWN)
+    file = _Entry(question, _OWN)
     file.write(text, compiled)
     return _cached(compiled, CachedSteps(question, text, compiled, steps), file)
 
 
 @dataclass(frozen=True, slots=True)
-class _File:
-    """A file of the cache. Objects in ``given`` are not stored in it and are needed to read it."""
+class _Entry:
+    """An entry of the cache; ``given`` are objects that are not stored, and needed to read it."""
 
     question: BookQuestion
     step: str
     given: tuple[object, ...] = ()
 
     @property
-    def path(self) -> Path:
-        folder = usable_folder()
-        if folder is None:
-            raise OSError("there is no cache")
-        place = "\0".join(self.question.place()).encode("utf-8", "surrogatepass")
-        return folder / f"{sha256(place).hexdigest()[:40]}-{self.step}{_ENDING}"
+    def _key(self) -> str:
+        return _COMPILED.files.key(*self.question.place(), self.step)
 
     def read(self) -> Compilation | None:
-        with suppress(OSError, *DAMAGED):
-            path = self.path
-            compilation = COMPILATIONS.read(mapped(path), self.given)
-            if isinstance(compilation, Compilation):
-                os.utime(path)
-                return compilation
-        return None
+        compilation = _COMPILED.recall(self._key, self.given)
+        return compilation if isinstance(compilation, Compilation) else None
 
     def write(self, text: Compilation, compiled: CompiledRulebook) -> None:
         prefixes = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
         compiled = replace(compiled, origin=None, recompile=None, prefixes=prefixes)
-        with suppress(OSError, ValueError):
-            path = self.path
-            content = replace(text, rulebook=compiled)
-            write_own(path, COMPILATIONS.written(content, self.given))
-            tidy(path.parent, _ENDING, MOST_FILES)
+        _COMPILED.keep({self._key: replace(text, rulebook=compiled)}, self.given)
 
 
-def _cached(compiled: CompiledRulebook, steps: CachedSteps, file: _File) -> CompiledRulebook:
+def _cached(compiled: CompiledRulebook, steps: CachedSteps, file: _Entry) -> CompiledRulebook:
     known = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
     return replace(compiled, recompile=steps, prefixes=CachedPrefixes(file, steps, known))
 
@@ -142,7 +125,7 @@ class CachedSteps:
         self._steps = steps
         self.time = CompilerTime() if steps is None else steps.time
         """The time that compilers have for all of its steps and machines."""
-        self._answers: dict[str, CompiledRulebook | RulecError] = {}
+        self._answers: dict[Fraction, CompiledRulebook | RulecError] = {}
 
     def __reduce__(self) -> tuple[type[CachedSteps], tuple[object, ...]]:
         own = replace(self._own, origin=None, recompile=None, prefixes=None)
@@ -150,31 +133,27 @@ class CachedSteps:
 
     def __call__(self, step_s: Fraction) -> CompiledRulebook:
         """The rulebook for a step. Raises RulecError as ``StepCompiler``."""
-        return self._answer(_name(step_s), lambda: self._compiler()(step_s))
+        if step_s not in self._answers:
+            if len(self._answers) >= MOST_FILES:
+                self._answers.clear()
+            self._answers[step_s] = self._load(step_s)
+        answer = self._answers[step_s]
+        if isinstance(answer, RulecError):
+            raise answer
+        return answer
 
     def judgeable_at(self, step_s: Fraction) -> CompiledRulebook:
         """The rulebook without rules too large for the step; which these are is not cached."""
         return self._compiler().judgeable_at(step_s)
 
-    def _answer(self, step: str, compile_it: Callable[[], CompiledRulebook]) -> CompiledRulebook:
-        if step not in self._answers:
-            if len(self._answers) >= MOST_FILES:
-                self._answers.clear()
-            self._answers[step] = self._load(_File(self._question, step, self._given), compile_it)
-        answer = self._answers[step]
-        if isinstance(answer, RulecError):
-            raise answer
-        return answer
-
-    def _load(
-        self, file: _File, compile_it: Callable[[], CompiledRulebook]
-    ) -> CompiledRulebook | RulecError:
+    def _load(self, step_s: Fraction) -> CompiledRulebook | RulecError:
+        file = _Entry(self._question, str(step_s), self._given)
         text = self._text
         known = file.read()
         if known and known.rulebook and known.basis == text.basis:
             return _cached(replace(known.rulebook, origin=self._own.origin), self, file)
         try:
-            compiled = _sharing(compile_it(), self._own)
+            compiled = _sharing(self._compiler()(step_s), self._own)
         except RulecError as error:
             # Not cached: machines that are too large and a missing Spot, which may change.
             return error
@@ -212,15 +191,11 @@ def _one_rule(this: CompiledRule, other: CompiledRule) -> CompiledRule:
     return _one_of(this, other) if this.certificate == other.certificate else this
 
 
-def _name(step_s: Fraction) -> str:
-    return f"{step_s.numerator}_{step_s.denominator}"
-
-
 @dataclass(slots=True)
 class CachedPrefixes:
     """A ``PrefixCompiler`` that adds its machines to the file of their rulebook."""
 
-    _file: _File
+    _file: _Entry
     _steps: CachedSteps
     _stored: StoredPrefixes | None = None
 
@@ -233,14 +208,13 @@ class CachedPrefixes:
         # The compiler takes 30 ms to import: only where the cache has no machines.
         from rulec.automata.prefix_machines import prefix_machines, timed_cuts
 
-        machines = prefix_machines(replace(rulebook, rules=rules), self._steps.time)
-        added = stored(replace(rulebook, rules=rules, prefixes=lambda _: machines), timed_cuts)
+        lacking = replace(rulebook, rules=rules)
+        machines = prefix_machines(lacking, self._steps.time)
         whole = self._file.read()
-        if added is not None and whole is not None and whole.rulebook is not None:
+        if whole is not None and whole.rulebook is not None:
+            ordered = {name: own and own.in_order() for name, own in machines.items()}
             self._stored = known = StoredPrefixes(
-                {**known.entries, **added.entries},
-                {**known.orders, **added.orders},
-                {**known.timed, **added.timed},
+                {**known.entries, **ordered}, {**known.timed, **timed_cuts(lacking)}
             )
             if {rule.name for rule in whole.rulebook.rules}.issuperset(known.entries):
                 self._file.write(whole, replace(whole.rulebook, prefixes=known))

@@ -55,11 +55,13 @@ class Job:
         """The propositions of the rule."""
         return propositions_of(self.formula) if self.named is None else self.named
 
-    def remarks_on(self, alive: str | None) -> tuple[str, ...]:
+    def comments(self, alive: str | None) -> list[str]:
         """The remarks for the automaton's text; a finite word ends when ``alive`` is false."""
-        if alive is None:
-            return self.remarks
-        return *self.remarks, f'finite words: "{alive}" is true as long as the word lasts'
+        remarks = list(self.remarks)
+        if alive is not None:
+            remarks.append(f'finite words: "{alive}" is true as long as the word lasts')
+        texts = [" ".join(x.replace("*/", "* /").replace("/*", "/ *").split()) for x in remarks]
+        return [f"/* {text} */" for text in texts]
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,9 @@ kept whose possible outcomes are the least or the greatest: the others stay betw
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from itertools import groupby
 from typing import Literal, TypeAlias
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
@@ -85,6 +86,14 @@ class OutcomeMachine:
             ]
         )
 
+    def in_order(self) -> OutcomeMachine:
+        """The machine with its ``order``."""
+        if self.order is not None:
+            return self
+        width = (len(self.successors) + 7) // 8
+        rows = [above.to_bytes(width, "little") for above in self.above]
+        return replace(self, order=b"".join(rows))
+
     @property
     def _found_order(self) -> tuple[int, ...]:
         size = len(self.successors)
@@ -117,22 +126,8 @@ class OutcomeMachine:
         members = frozenset(states)
         if len(members) < 3:
             return members
-        above, below = self.above, self.below
-        bits = sum(1 << state for state in members)
-        # A product may have equivalent states.
-        first = [
-            state
-            for state in members
-            if not above[state] & below[state] & bits & ((1 << state) - 1)
-        ]
-        bits = sum(1 << state for state in first)
-        return frozenset(
-            [
-                state
-                for state in first
-                if above[state] & bits == 1 << state or below[state] & bits == 1 << state
-            ]
-        )
+        bits = sum([1 << state for state in members])
+        return frozenset(bits_of(self.least(bits) | self.greatest(bits)))
 
 
 @lru_cache(maxsize=1 << 14)
@@ -230,8 +225,8 @@ def of_prefixes(
             lost = target[0] == machine.rejecting_sink and not machine.outputs[own][symbol]
             kept = finite.outputs[other][finite_symbol]
             outcomes.append(VIOLATED if lost else KEPT if kept else PENDING)
-        successors.append(row)
-        outputs.append(outcomes)
+        successors.append(tuple(row))
+        outputs.append(tuple(outcomes))
     letters = tuple(
         [
             classes.get(pair, IMPOSSIBLE)
@@ -239,7 +234,7 @@ def of_prefixes(
         ]
     )
     first = frozenset(places[pair] for pair in starts)
-    return OutcomeMachine(machine.reads, letters, successors, outputs, first)
+    return OutcomeMachine(machine.reads, letters, tuple(successors), tuple(outputs), first)
 
 
 @dataclass(frozen=True, slots=True)
@@ -284,15 +279,7 @@ class SetMonitor:
 
         The third item is the index of the letter after which every completion was lost, or None.
         """
-        here, lost = self.start, self.machine.lost
-        step = OutcomeRange(here, KEPT, KEPT)
-        steps = self._steps
-        for index, classes in enumerate(word):
-            step = steps.get((here, classes)) or self.step(here, classes)
-            here = step.states
-            if step.best == VIOLATED and lost.issuperset(self._sets[here]):
-                return VIOLATED, VIOLATED, index
-        return step.best, step.worst, None
+        return self.run_stretches((classes, len(list(own))) for classes, own in groupby(word))
 
     def run_stretches(self, stretches: Iterable[tuple[int, int]]) -> tuple[int, int, int | None]:
         """``run`` of a word given as pairs of a set of classes and its number of repetitions."""

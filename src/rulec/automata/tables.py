@@ -7,7 +7,7 @@ instead. Letters with equal columns are merged, then states that no word disting
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from operator import or_
@@ -183,40 +183,13 @@ def minimise(
 ) -> tuple[list[list[int]], list[Sequence[Output]]]:
     """Merge equivalent states; number the rest in breadth-first order from ``initial``.
 
-    Moore's partition refinement; states with different outputs (verdicts) are different. When a
-    block splits, its largest part keeps its number, so that only states with a successor in one of
-    the others are looked at again (after Hopcroft, 1971).
+    States with different outputs (verdicts) are different.
     """
-    blocks = _number(map(tuple, outputs))
-    before: list[set[int]] = [set() for _ in blocks]
-    for state, row in enumerate(successors):
-        for target in set(row):
-            before[target].add(state)
-    members: dict[int, set[int]] = {}
-    for state, block in enumerate(blocks):
-        members.setdefault(block, set()).add(state)
-    changed = set(range(len(blocks)))
-    while changed:
-        parts: dict[int, dict[tuple[int, ...], list[int]]] = {}
-        for state in changed:
-            after = tuple(map(blocks.__getitem__, successors[state]))
-            parts.setdefault(blocks[state], {}).setdefault(after, []).append(state)
-        moved: list[int] = []
-        for block, by_target in parts.items():
-            apart = sorted(map(set, by_target.values()), key=len)
-            # Those that were not looked at still agree with each other, and with none of these.
-            others = members[block]
-            others.difference_update(*apart)
-            if len(others) < len(apart[-1]):
-                members[block] = apart.pop()
-                apart += [others] if others else []
-            for part in apart:
-                number = len(members)
-                members[number] = part
-                moved += part
-                for state in part:
-                    blocks[state] = number
-        changed = {state for target in moved for state in before[target]}
+
+    def after(state: int, blocks: Sequence[int]) -> Hashable:
+        return tuple(map(blocks.__getitem__, successors[state]))
+
+    blocks = refined([tuple(row) for row in outputs], successors, after)
     representative: dict[int, int] = {}
     for state, block in enumerate(blocks):
         representative.setdefault(block, state)
@@ -233,6 +206,47 @@ def minimise(
     )
 
 
-def _number(keys: Iterable[tuple[object, ...]]) -> list[int]:
-    numbers: dict[tuple[object, ...], int] = {}
-    return [numbers.setdefault(key, len(numbers)) for key in keys]
+def refined(
+    kinds: Sequence[Hashable],
+    targets_of: Sequence[Iterable[int]],
+    after: Callable[[int, Sequence[int]], Hashable],
+) -> list[int]:
+    """For each state a block, equal for states of one kind that agree in what comes ``after`` them.
+
+    Moore's partition refinement. ``after`` depends on the blocks of a state's targets. When a block
+    splits, its largest part keeps its number, so that only states with a target in one of the
+    others are looked at again: each about log n times (Hopcroft, *An n log n algorithm for
+    minimizing states in a finite automaton*, 1971). Else a chain of counted steps, whose states
+    all differ, would take quadratic time.
+    """
+    numbers: dict[Hashable, int] = {}
+    blocks = [numbers.setdefault(kind, len(numbers)) for kind in kinds]
+    before: list[set[int]] = [set() for _ in blocks]
+    for state, targets in enumerate(targets_of):
+        for target in set(targets):
+            before[target].add(state)
+    members: dict[int, set[int]] = {}
+    for state, block in enumerate(blocks):
+        members.setdefault(block, set()).add(state)
+    changed = set(range(len(blocks)))
+    while changed:
+        parts: dict[int, dict[Hashable, list[int]]] = {}
+        for state in changed:
+            parts.setdefault(blocks[state], {}).setdefault(after(state, blocks), []).append(state)
+        moved: list[int] = []
+        for block, by_target in parts.items():
+            apart = sorted(map(set, by_target.values()), key=len)
+            # Those that were not looked at still agree with each other, and with none of these.
+            others = members[block]
+            others.difference_update(*apart)
+            if len(others) < len(apart[-1]):
+                members[block] = apart.pop()
+                apart += [others] if others else []
+            for part in apart:
+                number = len(members)
+                members[number] = part
+                moved += part
+                for state in part:
+                    blocks[state] = number
+        changed = {state for target in moved for state in before[target]}
+    return blocks

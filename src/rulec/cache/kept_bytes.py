@@ -24,15 +24,23 @@ _QUICKLY = 1
 
 @dataclass(frozen=True, slots=True)
 class KeptBytes:
-    """Up to ``most`` files with the ending ``kind``; the least recently used are removed first."""
+    """Up to ``most`` files with the ending ``kind``; the least recently used are removed first.
+
+    They are kept ``always``, or only by the command line.
+    """
 
     kind: str
     most: int
+    always: bool = False
 
     @property
     def can_be(self) -> bool:
         """Whether entries may be cached, and there is a folder for them."""
-        return is_keeping() and usable_folder() is not None
+        return self._folder is not None
+
+    @property
+    def _folder(self) -> Path | None:
+        return usable_folder() if self.always or is_keeping() else None
 
     def key(self, *parts: str) -> str:
         """The name of the entry made from these texts by this version of rulec."""
@@ -45,7 +53,7 @@ class KeptBytes:
 
     def recall(self, key: str) -> bytes | None:
         """The data cached under a key; None if there is none."""
-        folder = usable_folder() if is_keeping() else None
+        folder = self._folder
         if folder is None:
             return None
         path = self._path(folder, key)
@@ -61,7 +69,7 @@ class KeptBytes:
 
     def keep(self, contents: Mapping[str, bytes]) -> None:
         """Cache data under each key, if possible."""
-        folder = usable_folder() if is_keeping() else None
+        folder = self._folder
         if folder is None or not contents:
             return
         with suppress(OSError, ValueError):

@@ -18,7 +18,7 @@ from types import MappingProxyType
 from typing import Any
 
 from rulec.cache.kept_bytes import KeptBytes
-from rulec.cache.mapped_tables import MappedTables, TableWriter
+from rulec.cache.row_tables import RowTables, TableWriter
 from rulec.garbage_collection import no_garbage_collection
 
 DAMAGED = (ValueError, TypeError, LookupError, ArithmeticError, RecursionError)
@@ -87,7 +87,7 @@ class ObjectCodec:
         with no_garbage_collection():
             return _Writer(self._kinds, given).file(item)
 
-    def read(self, tables: MappedTables, given: Sequence[object] = ()) -> Any:
+    def read(self, tables: RowTables, given: Sequence[object] = ()) -> Any:
         """The object in a file. Raises one of ``DAMAGED`` if there is none."""
         text = json.loads(tables.text)
         first, n_made, numbers = len(given), text["made"], tables.row(tuple(text["parts"]))
@@ -117,7 +117,7 @@ class KeptObjects:
         data = self.files.recall(key)
         if data is not None:
             with suppress(*DAMAGED):
-                return self.codec.read(MappedTables(data), given)
+                return self.codec.read(RowTables(data), given)
         return None
 
     def keep(self, contents: Mapping[str, object], given: Sequence[object] = ()) -> None:
@@ -128,7 +128,7 @@ class KeptObjects:
                 self.files.keep({key: written(item, given) for key, item in contents.items()})
 
 
-def _value(value: Any, tables: MappedTables) -> object:
+def _value(value: Any, tables: RowTables) -> object:
     match value:
         case [code, first, count]:
             return tables.row((code, first, count))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import prod
 
-from msgspec import UNSET
+from msgspec import UNSET, UnsetType
 from msgspec.structs import astuple
 
 from rulec.automata import mealy_monitor as monitors
@@ -29,12 +29,12 @@ from rulec.automata.bundle.compiled_rulebook import (
 )
 from rulec.automata.bundle.cut_machines import (
     BEGUN,
-    CutTables,
     StoredPrefixes,
     TimedCut,
     looks_back,
 )
 from rulec.automata.bundle.formula_check import check_formula
+from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.automata.tables import SizeError
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic import formula as ltl
@@ -133,7 +133,10 @@ def _prefixes(rulebook: CompiledRulebook, read: schema.BundleFile) -> StoredPref
             )
             require(known, f"the table of rule `{rule.name}` for cut traces has no valid start")
     return StoredPrefixes(
-        {rule.name: _cut_tables(rule) for rule in read.rules},
+        {
+            rule.name: _outcome_machine(rule, entry.cut)
+            for rule, entry in zip(rulebook.rules, read.rules, strict=True)
+        },
         timed={
             rule.name: _timed_cut(rule, entry.cut_clocked, ends=read.semantics == "finite")
             for rule, entry in zip(rulebook.rules, read.rules, strict=True)
@@ -156,8 +159,13 @@ def _timed_cut(rule: CompiledRule, read: schema.CutClockedEntry, *, ends: bool) 
     )
 
 
-def _cut_tables(rule: schema.BundleRule) -> CutTables | None:
-    return CutTables(*astuple(rule.cut)) if rule.cut else None
+def _outcome_machine(
+    rule: CompiledRule, read: schema.CutMachineEntry | UnsetType | None
+) -> OutcomeMachine | None:
+    if not read:
+        return None
+    letters, successors, outputs, starts = astuple(read)
+    return OutcomeMachine(rule.machine.reads, letters, successors, outputs, frozenset(starts))
 
 
 def _priorities(read: schema.BundleFile) -> frozenset[tuple[str, str]]:

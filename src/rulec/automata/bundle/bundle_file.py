@@ -28,9 +28,10 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledRulebook,
     alike,
 )
-from rulec.automata.bundle.cut_machines import CutTables, StoredPrefixes, TimedCut, stored
+from rulec.automata.bundle.cut_machines import StoredPrefixes, TimedCut, stored
 from rulec.automata.bundle.required_signature import check_signed
 from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.phrases import json_words
 from rulec.files.file_sets import write_together
@@ -135,12 +136,14 @@ def _cut_clocked(timed: TimedCut) -> schema.CutClockedEntry:
     return schema.CutClockedEntry(clocked_entry(timed.own), clocked_entry(timed.alone))
 
 
-def _cut(tables: CutTables | None) -> schema.CutMachineEntry | None:
-    if tables is None:
+def _cut(machine: OutcomeMachine | None) -> schema.CutMachineEntry | None:
+    if machine is None:
         return None
     # Outcomes are 0, 1 and 2, as the schema requires.
-    outputs: Any = tables.outputs
-    return schema.CutMachineEntry(tables.letters, tables.successors, outputs, tables.starts)
+    successors: Any = machine.successors
+    outputs: Any = machine.outputs
+    starts = tuple(sorted(machine.starts))
+    return schema.CutMachineEntry(machine.letters, successors, outputs, starts)
 
 
 def _parts(parts: RuleParts) -> schema.PartsEntry:

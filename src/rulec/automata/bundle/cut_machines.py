@@ -96,30 +96,14 @@ def cut_machine(own: MealyMonitor, alone: MealyMonitor, *, goes_on: bool) -> Out
     return of_prefixes(own, alone, starts)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CutTables:
-    """The tables of a rule's machine for cut traces, as in ``OutcomeMachine``."""
-
-    letters: tuple[int, ...]
-    successors: tuple[tuple[int, ...], ...]
-    outputs: tuple[tuple[int, ...], ...]
-    starts: tuple[int, ...]
-
-
-_MADE: dict[tuple[int, int], tuple[CutTables, MealyMonitor, OutcomeMachine]] = {}
-_MOST_MADE = 1 << 10
-
-
 @dataclass(frozen=True, slots=True)
 class StoredPrefixes:
     """A ``PrefixCompiler`` of stored machines, by the rule's name.
 
-    ``orders`` are the orders of their states (``OutcomeMachine.order``), where these are stored,
-    too. ``timed`` says what the machines are made of at any step: where there is no entry.
+    ``timed`` says what the machines are made of at any step: where there is no entry.
     """
 
-    entries: Mapping[str, CutTables | None]
-    orders: Mapping[str, bytes] = field(default_factory=dict)
+    entries: Mapping[str, OutcomeMachine | None]
     timed: Mapping[str, TimedCut] = field(default_factory=dict)
     _made: dict[str, OutcomeMachine | None] = field(
         default_factory=dict, init=False, repr=False, compare=False
@@ -133,34 +117,15 @@ class StoredPrefixes:
         """The machines at other steps of some rules."""
         gone = {rule.name for rule in rules}
         entries = {name: entry for name, entry in self.entries.items() if name not in gone}
-        return StoredPrefixes(entries, self.orders, self.timed)
+        return StoredPrefixes(entries, self.timed)
 
     def _machine(self, rule: CompiledRule) -> OutcomeMachine | None:
-        entry, timed = self.entries.get(rule.name), self.timed.get(rule.name)
+        timed = self.timed.get(rule.name)
         if rule.name in self.entries or timed is None:
-            return None if entry is None else _made(entry, rule, self.orders.get(rule.name))
+            return self.entries.get(rule.name)
         if rule.name not in self._made:
             self._made[rule.name] = timed.if_small(rule)
         return self._made[rule.name]
-
-
-def _made(entry: CutTables, rule: CompiledRule, order: bytes | None) -> OutcomeMachine:
-    # Rules that read different signals may have the same tables.
-    key = id(entry), id(rule.machine)
-    known = _MADE.get(key)
-    if known is None or known[0] is not entry or known[1] is not rule.machine:
-        if len(_MADE) >= _MOST_MADE:
-            _MADE.clear()
-        machine = OutcomeMachine(
-            rule.machine.reads,
-            entry.letters,
-            entry.successors,
-            entry.outputs,
-            frozenset(entry.starts),
-            order=order,
-        )
-        known = _MADE[key] = entry, rule.machine, machine
-    return known[2]
 
 
 def stored(
@@ -174,19 +139,4 @@ def stored(
     """
     if rulebook.prefixes is None or isinstance(rulebook.prefixes, StoredPrefixes):
         return rulebook.prefixes
-    machines = rulebook.prefixes(rulebook)
-    entries = {name: _entry(machine) for name, machine in machines.items()}
-    orders = {name: _order(machine) for name, machine in machines.items() if machine is not None}
-    return StoredPrefixes(entries, orders, timed(rulebook))
-
-
-def _order(machine: OutcomeMachine) -> bytes:
-    width = (len(machine.successors) + 7) // 8
-    return b"".join([above.to_bytes(width, "little") for above in machine.above])
-
-
-def _entry(machine: OutcomeMachine | None) -> CutTables | None:
-    if machine is None:
-        return None
-    successors, outputs = tuple(map(tuple, machine.successors)), tuple(map(tuple, machine.outputs))
-    return CutTables(machine.letters, successors, outputs, tuple(sorted(machine.starts)))
+    return StoredPrefixes(rulebook.prefixes(rulebook), timed(rulebook))

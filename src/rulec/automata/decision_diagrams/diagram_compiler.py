@@ -15,7 +15,7 @@ def _translated(job: Job) -> Translated:
     return Translated(
         automaton,
         possible,
-        in_hoa(rule_automaton, job.name, job.remarks_on(rule_automaton.alive)),
+        in_hoa(rule_automaton, job.name, job.comments(rule_automaton.alive)),
     )
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from rulec.automata.decision_diagrams.rule_automaton import RuleAutomaton
 
 
-def in_hoa(automaton: RuleAutomaton, name: str, remarks: Sequence[str]) -> str:
-    """The automaton's text; ``remarks`` become comments.
+def in_hoa(automaton: RuleAutomaton, name: str, comments: Sequence[str]) -> str:
+    """The automaton's text, with these comments.
 
     A finite word is encoded by an extra proposition that is false from its end on.
     """
@@ -22,7 +22,7 @@ def in_hoa(automaton: RuleAutomaton, name: str, remarks: Sequence[str]) -> str:
     is_buchi = acceptance == "Inf(0)"
     head = [
         "HOA: v1",
-        *[f"/* {_without_comment_signs(remark)} */" for remark in remarks],
+        *comments,
         f"name: {_quoted(name)}",
         f"States: {len(rows)}",
         "Start: 0",
@@ -90,7 +90,3 @@ def _acceptance(n_marks: int, accepted: Sequence[bool]) -> str:
 def _quoted(text: str) -> str:
     escaped = text.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'
-
-
-def _without_comment_signs(text: str) -> str:
-    return " ".join(text.replace("*/", "* /").replace("/*", "/ *").split())

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias, TypeVar
 
 from rulec.automata.compiler_jobs import BeyondReachError
 from rulec.automata.decision_diagrams.diagrams import FALSE, TRUE, Diagrams
-from rulec.automata.tables import MOST_EDGES, MOST_STATES, SizeError
+from rulec.automata.tables import MOST_EDGES, MOST_STATES, SizeError, refined
 from rulec.logic.past_registers import Register
 
 Edges: TypeAlias = Mapping[tuple[int, int], int]
@@ -130,58 +130,24 @@ def joined(
 
 def merged(automaton: SymbolicAutomaton, diagrams: Diagrams) -> SymbolicAutomaton:
     """The automaton with states merged that no word distinguishes by its marks or its end."""
-    blocks = _blocks(automaton, diagrams)
+
+    def after(state: int, blocks: Sequence[int]) -> Hashable:
+        return frozenset(_regrouped(automaton.edges[state], blocks, diagrams).items())
+
+    ends = automaton.ends_well or [False] * len(automaton.edges)
+    targets = [[target for target, _ in row] for row in automaton.edges]
+    blocks = refined(ends, targets, after)
     # Numbered by first appearance, so the first state gets 0.
     numbers = {block: number for number, block in enumerate(dict.fromkeys(blocks))}
     if len(numbers) == len(blocks):
         return automaton
     kept = [blocks.index(block) for block in numbers]
     of = [numbers[block] for block in blocks]
-    ends = automaton.ends_well
     return replace(
         automaton,
         edges=tuple([_regrouped(automaton.edges[state], of, diagrams) for state in kept]),
-        ends_well=None if ends is None else tuple([ends[state] for state in kept]),
+        ends_well=automaton.ends_well and tuple([automaton.ends_well[state] for state in kept]),
     )
-
-
-def _blocks(automaton: SymbolicAutomaton, diagrams: Diagrams) -> list[int]:
-    """For each state a block number, equal for states that no word distinguishes.
-
-    When a block is split, the largest part keeps its number, and only predecessors of renumbered
-    states are examined again: each state about log n times (Hopcroft, *An n log n algorithm for
-    minimizing states in a finite automaton*, 1971). Otherwise a chain of counted steps, whose
-    states all differ, would take quadratic time.
-    """
-    size = len(automaton.edges)
-    blocks = [0] * size if automaton.ends_well is None else list(map(int, automaton.ends_well))
-    members: list[set[int]] = [set(), set()]
-    sources: list[set[int]] = [set() for _ in range(size)]
-    for state, row in enumerate(automaton.edges):
-        members[blocks[state]].add(state)
-        for target, _ in row:
-            sources[target].add(state)
-    pending = set(range(size))
-    while pending:
-        parts_of: dict[int, dict[object, set[int]]] = {}
-        for state in pending:
-            key = frozenset(_regrouped(automaton.edges[state], blocks, diagrams).items())
-            parts_of.setdefault(blocks[state], {}).setdefault(key, set()).add(state)
-        changed: list[int] = []
-        for block, by_key in parts_of.items():
-            # The other members lead to no renumbered state, so they stay equivalent.
-            parts = sorted(by_key.values(), key=len)
-            if len(parts[-1]) > len(members[block]) - sum(map(len, parts)):
-                others = members[block].difference(*parts)
-                parts = [*parts[:-1], others] if others else parts[:-1]
-            for part in parts:
-                members[block] -= part
-                for state in part:
-                    blocks[state] = len(members)
-                members.append(part)
-                changed += part
-        pending = {source for state in changed for source in sources[state]}
-    return blocks
 
 
 def _regrouped(row: Edges, blocks: Sequence[int], diagrams: Diagrams) -> dict[tuple[int, int], int]:

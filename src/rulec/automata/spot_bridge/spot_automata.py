@@ -16,15 +16,15 @@ from rulec.logic.formula import Proposition
 VERSION: str = spot.version()
 
 
-def in_hoa(automaton: Any, name: str, remarks: Sequence[str]) -> str:
+def in_hoa(automaton: Any, name: str, comments: Sequence[str]) -> str:
     """The automaton in the Hanoi Omega-Automata format, version 1.
 
-    ``remarks`` become comments: the format also has custom headers, but not every tool skips those.
+    What is remarked are comments: the format also has custom headers, but not every tool skips
+    those.
     """
     ordered = _ordered(automaton)
     ordered.set_name(name)
     first, *rest = ordered.to_str("hoa").splitlines()
-    comments = [f"/* {_without_comment_signs(remark)} */" for remark in remarks]
     return "\n".join([first, *comments, *rest]) + "\n"
 
 
@@ -60,10 +60,6 @@ def _ordered(automaton: Any) -> Any:
     ordered.set_init_state(0)
     ordered.prop_copy(automaton, spot.twa_prop_set(*[True] * 6))
     return ordered
-
-
-def _without_comment_signs(text: str) -> str:
-    return " ".join(text.replace("*/", "* /").replace("/*", "/ *").split())
 
 
 def explore(

@@ -46,7 +46,7 @@ def _rest(
 def _text(translation: Translation, job: Job) -> str:
     if not job.remarks:
         return ""
-    return in_hoa(translation.automaton, job.name, job.remarks_on(translation.alive))
+    return in_hoa(translation.automaton, job.name, job.comments(translation.alive))
 
 
 def _mentioned(

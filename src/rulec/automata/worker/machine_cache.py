@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from rulec.automata.bundle.mapped_rulebook import MACHINE_KINDS
+from rulec.automata.bundle.stored_rulebook import MACHINE_KINDS
 from rulec.automata.clocks.clocked_machine import ClockedMachine
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.mealy_monitor import NumberRead, Read

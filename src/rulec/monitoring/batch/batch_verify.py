@@ -9,40 +9,43 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from itertools import islice
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
-from rulec.automata.thresholds import exact_step
+import numpy as np
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.garbage_collection import no_garbage_collection
-from rulec.monitoring.batch.alike_traces import (
-    AlikeTraces,
-    check_nothing_derived,
-    traces_of_columns,
-    traces_of_group,
-    traces_of_lines,
-)
 from rulec.monitoring.batch.by_states import rulebook_for_trace, verify_or_reason
 from rulec.monitoring.batch.cell_verdicts import VerdictColumns, verify_cells
-from rulec.monitoring.batch.columns.block_columns import groups_of
-from rulec.monitoring.batch.columns.column_states import shared_states
+from rulec.monitoring.batch.columns.column_states import shared_states, trace_at
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
-from rulec.monitoring.batch.joined.joined_columns import joined_columns
-from rulec.monitoring.batch.joined.joined_traces import TraceKind
-from rulec.monitoring.batch.stacked.stacked_run import StackedRun, check_judgeable
-from rulec.monitoring.batch.trace_groups import under_own_names
-from rulec.monitoring.batch.verify import IRREGULAR, derived_trace, verdicts_together
+from rulec.monitoring.batch.joined.joined_columns import (
+    check_arrays,
+    joined_columns,
+    joined_lines,
+    joined_rows,
+)
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
+from rulec.monitoring.batch.stacked.stacked_run import check_judgeable
+from rulec.monitoring.batch.verify import (
+    IRREGULAR,
+    derived_trace,
+    has_few_choices,
+    verdicts_on,
+    verdicts_together,
+)
 from rulec.monitoring.bindings import Cast, types_of
 from rulec.monitoring.fault_containment import said
+from rulec.monitoring.implied_values import words_meant
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.rulebook.rules.axiom_instances import counts
+from rulec.resource_limits import CHOICES
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import LineBlock
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
-from rulec.trace.trace_columns import TraceColumns
+from rulec.trace.trace_columns import TraceCells, TraceColumns
 from rulec.trace.trace_model import check_frame, check_presence
 
 _MADE_TOGETHER = 1 << 12
@@ -52,9 +55,6 @@ Each takes one or two kilobytes, and a block may need one per row.
 """
 
 Answer = Verdict | NotJudged
-
-_FEWEST_ROWS = 200
-"""If a shape in a block has fewer rows on average, its traces are read row by row."""
 
 Items = Sequence[Trace | RulecError]
 
@@ -123,38 +123,6 @@ def _readable(trace: Trace, rulebook: CompiledRulebook) -> Trace | None:
     return None
 
 
-def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
-    """The rulebook fitted to traces of this shape.
-
-    Raises RulecError if it cannot judge them, UnencodableError if it has too many bindings for
-    columns.
-    """
-    rules = rulebook_for_trace(trace, rulebook)
-    for rule in rules.rules:
-        check_step(rule, exact_step(trace.step_s))
-    check_objects(trace.objects, rules.vocabulary)
-    cast = Cast(trace.objects, rules.vocabulary, len(trace.states), trace.present)
-    if any(cast.has_many(types_of(rule)) for rule in rules.rules):
-        raise UnencodableError
-    return rules
-
-
-def violations_in(
-    verdicts: Sequence[VerdictColumns], n_traces: int
-) -> Iterator[tuple[int, Sequence[Violation]]]:
-    """The violations of each trace that could be read, in the order of rules and objects."""
-    unread: set[int] = set().union(*[verdict.unread.tolist() for verdict in verdicts])
-    by_trace: dict[int, list[Violation]] = {}
-    for verdict in verdicts:
-        rule, objects = verdict.task.rule, verdict.task.objects
-        for trace, step in zip(verdict.violated.tolist(), verdict.lost_at().tolist(), strict=True):
-            violation = Violation(rule.name, rule.strength, objects, None if step < 0 else step)
-            by_trace.setdefault(trace, []).append(violation)
-    for trace in range(n_traces):
-        if trace not in unread:
-            yield trace, by_trace.get(trace, ())
-
-
 def verify_items(
     items: Items, rulebook: CompiledRulebook
 ) -> Iterator[tuple[Items, Iterable[Answer]]]:
@@ -197,50 +165,82 @@ def _verify_lines(block: LineBlock, rulebook: CompiledRulebook) -> Sequence[Answ
     for lines in block.alike:
         # Irregularities are reported line by line.
         with suppress(*IRREGULAR):
-            example = lines.headings[0]
-            rules = rules_for(Trace("", example.step_s, example.objects, ()), rulebook)
-            _verify_alike(traces_of_lines(block, lines, rules.vocabulary), rules, answers)
+            joined = joined_lines(block, lines, rulebook.vocabulary)
+            _fill(answers, lines.lines.tolist(), joined, rulebook)
     left = [place for place, answer in enumerate(answers) if answer is None]
     others = iter(verify_chunk([block[place] for place in left], rulebook))
     return [next(others) if answer is None else answer for answer in answers]
 
 
+def _fill(
+    answers: list[Answer | None],
+    places: Sequence[int],
+    joined: JoinedTraces,
+    rulebook: CompiledRulebook,
+) -> None:
+    """Fill in the answers for the traces that can be judged together. Raises ``IRREGULAR``."""
+    own = range(len(places)) if max(joined.n_objects) ** 2 > CHOICES.value() else ()
+    if not all(has_few_choices(joined.objects_of(number), rulebook) for number in own):
+        raise UnencodableError
+    for place, verdict in zip(places, verdicts_on(joined, rulebook), strict=True):
+        answers[place] = verdict
+
+
 @no_garbage_collection()
 def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[Answer]:
-    """Answers for traces given as columns, in the layout's order."""
-    alike = traces_of_columns(columns, rulebook.vocabulary)
-    answers: list[Answer | None] = [None] * len(alike.places)
+    """Answers for traces given as columns, in the layout's order.
+
+    Raises ValueError for an array that fits no name of the vocabulary, or not the layout.
+    """
+    check_arrays(columns, rulebook.vocabulary)
+    answers: list[Answer | None] = [None] * columns.layout.n_traces
     with suppress(*IRREGULAR):
-        check_nothing_derived(columns, rulebook.vocabulary)
-        rules = rules_for(Trace("", columns.step_s, columns.objects, ()), rulebook)
-        _verify_alike(alike, rules, answers)
+        cells = _cells(columns, rulebook)
+        if cells is None:
+            joined = joined_columns(columns, rulebook.vocabulary)
+            _fill(answers, range(len(answers)), joined, rulebook)
+        else:
+            verdicts = verify_cells(cells, rulebook.fitted_to(columns.step_s))
+            for number, violations in _violations_in(verdicts, len(answers)):
+                answers[number] = Verdict(str(number), tuple(violations))
     return [
-        verify_or_reason(alike.traces(place), rulebook) if answer is None else answer
+        verify_or_reason(trace_at(columns, place, rulebook.vocabulary), rulebook)
+        if answer is None
+        else answer
         for place, answer in enumerate(answers)
     ]
 
 
-def _verify_alike(
-    alike: AlikeTraces,
-    rules: CompiledRulebook,
-    answers: list[Answer | None],
-) -> None:
-    """Fill in the answers for traces whose values are all readable. Raises ``IRREGULAR``."""
-    if any(counts(axiom.formula) for axiom in rules.axioms):
-        raise UnencodableError
-    cells = shared_states(alike.columns, rules.vocabulary) if alike.is_whole else None
+def _cells(columns: TraceColumns, rulebook: CompiledRulebook) -> TraceCells | None:
+    """The traces as cells, if they are of few states that say everything. Raises ``IRREGULAR``."""
+    vocabulary = rulebook.vocabulary
+    if vocabulary.constants or vocabulary.implied or words_meant(vocabulary, None):
+        return None
+    cells = shared_states(columns, vocabulary)
     if cells is not None:
-        objects, verdicts = tuple(alike.columns.objects), verify_cells(cells, rules)
-        for number, violations in violations_in(verdicts, len(alike.places)):
-            names = alike.names(number) if violations else ()
-            own_names = under_own_names(violations, objects, names)
-            answers[alike.places[number]] = Verdict(alike.ids(number), own_names)
-        return
-    judged = StackedRun(joined_columns(alike, rules.vocabulary), rules).judged()
-    for place, own in zip(alike.places, judged, strict=True):
-        if own is not None:
-            says = partial(alike.says, own.number)
-            answers[place] = own.findings.verdict(own.number, alike.ids(own.number), says)
+        rules = rulebook_for_trace(Trace("", columns.step_s, columns.objects, ()), rulebook)
+        check_judgeable(TraceKind(columns.step_s, "complete", None), rules)
+        check_objects(columns.objects, vocabulary)
+        cast = Cast(columns.objects, vocabulary, columns.layout.n_steps, columns.present)
+        if any(cast.has_many(types_of(rule)) for rule in rules.rules):
+            raise UnencodableError
+    return cells
+
+
+def _violations_in(
+    verdicts: Sequence[VerdictColumns], n_traces: int
+) -> Iterator[tuple[int, Sequence[Violation]]]:
+    """The violations of each trace that could be read, in the order of rules and objects."""
+    unread: set[int] = set().union(*[verdict.unread.tolist() for verdict in verdicts])
+    by_trace: dict[int, list[Violation]] = {}
+    for verdict in verdicts:
+        rule, objects = verdict.task.rule, verdict.task.objects
+        for trace, step in zip(verdict.violated.tolist(), verdict.lost_at().tolist(), strict=True):
+            violation = Violation(rule.name, rule.strength, objects, None if step < 0 else step)
+            by_trace.setdefault(trace, []).append(violation)
+    for trace in range(n_traces):
+        if trace not in unread:
+            yield trace, by_trace.get(trace, ())
 
 
 def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:
@@ -265,14 +265,12 @@ def _verify_block(
     try:
         presence = outlined(block)
         block = replace(block, outline=presence)
-        groups = groups_of(block, presence)
-        if len(groups) > 1 and len(groups) * _FEWEST_ROWS > len(presence.trace) + _FEWEST_ROWS:
-            return None
-        for group in groups:
-            objects = dict(zip(group.objects, group.types, strict=True))
-            step_s = float(presence.step_s[group.traces[0]])
-            rules = rules_for(Trace("", step_s, objects, ()), rulebook)
-            _verify_alike(traces_of_group(group, rules.vocabulary), rules, answers)
+        kinds: dict[tuple[object, ...], list[int]] = {}
+        for trace in sorted({*range(len(block))} - block.partial):
+            kinds.setdefault((presence.step_s[trace], presence.ends[trace]), []).append(trace)
+        for traces in kinds.values():
+            joined = joined_rows(block, presence, np.array(traces), rulebook.vocabulary)
+            _fill(answers, traces, joined, rulebook)
     except (OddTableError, *IRREGULAR):
         return None
     return block, _with_others(answers, block, rulebook)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.machines.joint_machine import join_machines
-from rulec.monitoring.batch.machines.table_run import first_lost, first_lost_of_one, run, run_alone
+from rulec.monitoring.batch.machines.table_run import first_lost, run
 from rulec.monitoring.bindings import Cast
 from rulec.monitoring.uncertainty.known_words import KnownLetters
 from rulec.trace import Trace
@@ -150,30 +150,15 @@ def _verdicts(
                 task=binding,
                 accepted=(verdicts & np.uint8(1 << bit)) != 0,
                 unread=unread,
-                _lost_at=partial(_lost_at, traces, binding, letters),
+                _lost_at=partial(
+                    first_lost,
+                    binding.rule.machine,
+                    letters,
+                    traces.cells,
+                    traces.layout,
+                    stretch=binding.stretch,
+                ),
             )
-
-
-def _lost_at(
-    traces: TraceCells, binding: RuleBinding, own: Sequence[int], chosen: NDArray[np.intp]
-) -> NDArray[np.int64]:
-    """As ``VerdictColumns.lost_at`` for these traces; ``own`` are the letters of the cells."""
-    layout, cells = traces.layout, traces.cells
-    first, last = binding.stretch
-    ends = layout.lengths[chosen] if last is None else np.full(len(chosen), last + 1)
-    machine = binding.rule.machine
-    if len(ends) and run_alone(len(ends), int(ends[0]) - first, len(machine.successors)):
-        letters = np.array(own)
-        words = (cells[layout.places(trace, first, last)] for trace in chosen.tolist())
-        lost = np.array([first_lost_of_one(machine, letters.take(word)) for word in words])
-    else:
-        # The ends are in descending order: those after a step come first.
-        by_step = (
-            cells[layout.starts[step] + chosen[: np.searchsorted(-ends, -step)]]
-            for step in range(first, int(ends[0]) if len(ends) else first)
-        )
-        lost = first_lost(machine, own, by_step, ends - first)
-    return np.where(lost < 0, lost, lost + first)
 
 
 def _read(

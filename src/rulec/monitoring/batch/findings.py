@@ -123,8 +123,8 @@ class Findings:
 
     def binding(self, rule: CompiledRule, chosen: Place) -> dict[str, str]:
         """The names of the objects for a rule's variables."""
-        names = [self._names[item] for item in chosen]
-        return dict(zip([variable.name for variable in rule.variables], names, strict=True))
+        pairs = zip(rule.variables, chosen, strict=True)
+        return {variable.name: self._names[item] for variable, item in pairs}
 
     def charged(self, apart: Mapping[int, Set[RuleFor]] = NOTHING_APART) -> Iterator[ChargedTraces]:
         """The traces with findings, rule by rule, but for what is open ``apart``, by trace."""
@@ -191,9 +191,11 @@ class Findings:
 
     def of(self, number: int) -> tuple[tuple[Violation, ...], tuple[OpenVerdict, ...]]:
         """The violations of a trace, and its open verdicts."""
-        made = [self._made(row) for row in self._by_trace.get(number, ())]
-        made += self._single.get(number, ())
-        findings = [result for _, result in sorted(made, key=_PLACE)]
+        rows, single = self._by_trace.get(number), self._single.get(number, ())
+        if rows is None and not single:
+            return (), ()
+        made = [self._made(row) for row in rows or ()]
+        findings = [result for _, result in sorted([*made, *single], key=_PLACE)]
         violations = tuple([result for result in findings if isinstance(result, Violation)])
         if number in self._whole:
             return violations, ()

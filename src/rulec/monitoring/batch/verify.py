@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import chain
 
@@ -15,6 +15,7 @@ from rulec.monitoring.batch.by_states import (
 )
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_states import joined_states
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
 from rulec.monitoring.batch.stacked.stacked_run import StackedRun
 from rulec.monitoring.bindings import types_of
 from rulec.monitoring.constant_values import with_constants
@@ -54,7 +55,7 @@ def derived_trace(trace: Trace, rulebook: CompiledRulebook) -> Trace | None:
     try:
         if not all(isinstance(text, str) for text in chain(*trace.objects.items())):
             return None  # states tell what is wrong with an object's name or type
-        if not _has_few_choices(trace, rulebook):
+        if not has_few_choices(trace.objects, rulebook):
             return None
         if not vocabulary.constants and not vocabulary.implied:
             return trace
@@ -67,11 +68,11 @@ def derived_trace(trace: Trace, rulebook: CompiledRulebook) -> Trace | None:
         return None
 
 
-def _has_few_choices(trace: Trace, rulebook: CompiledRulebook) -> bool:
+def has_few_choices(objects: Mapping[str, str], rulebook: CompiledRulebook) -> bool:
     """Whether no rule has more choices of objects than the limit `choices`, which states report."""
-    n_objects, most = len(trace.objects), CHOICES.value()
+    n_objects, most = len(objects), CHOICES.value()
     return n_objects**2 <= most or all(
-        number_of_choices(types, trace.objects, rulebook.vocabulary) <= most
+        number_of_choices(types, objects, rulebook.vocabulary) <= most
         for types in dict.fromkeys(map(types_of, rulebook.rules))
         if len(types) == 2
     )
@@ -85,19 +86,18 @@ def verdicts_together(
     These are found by halving.
     """
     try:
-        joined = joined_states(traces, rulebook.vocabulary)
-        judged = StackedRun(joined, rulebook).judged()
+        return verdicts_on(joined_states(traces, rulebook.vocabulary), rulebook)
     except IRREGULAR:
         if len(traces) == 1:
             return [None]
         middle = len(traces) // 2
         halves = traces[:middle], traces[middle:]
         return [verdict for half in halves for verdict in verdicts_together(half, rulebook)]
+
+
+def verdicts_on(joined: JoinedTraces, rulebook: CompiledRulebook) -> list[Verdict | None]:
+    """The verdicts on traces laid end to end; None for irregular ones. Raises ``IRREGULAR``."""
     return [
-        own and own.findings.verdict(own.number, trace.id, partial(_says, trace))
-        for own, trace in zip(judged, traces, strict=True)
+        own and own.findings.verdict(number, joined.id_of(number), partial(joined.says, number))
+        for number, own in enumerate(StackedRun(joined, rulebook).judged())
     ]
-
-
-def _says(trace: Trace, name: str) -> bool:
-    return any(name in state for state in trace.states)

@@ -12,22 +12,17 @@ import numpy as np
 from rulec.array_types import Flags
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.alike_traces import AlikeTraces, traces_of_group, traces_of_lines
-from rulec.monitoring.batch.columns.block_columns import groups_of
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
-from rulec.monitoring.batch.joined.joined_columns import joined_columns
+from rulec.monitoring.batch.joined.joined_columns import joined_lines, joined_rows
 from rulec.monitoring.batch.joined.joined_states import joined_states
-from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
-from rulec.monitoring.batch.trace_groups import Names, shape_of
-from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, with_all_values
 from rulec.monitoring.moments.exposure import Exposure, alike_exposures
 from rulec.monitoring.moments.name_tables import NameTables, tables_of
 from rulec.monitoring.moments.trace_truth import TraceTruth
-from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import LineBlock
-from rulec.trace.formats.table_blocks import Block
+from rulec.trace.formats.table_blocks import Block, BlockPresence
 from rulec.trace.partly_known.partly_known_values import EnumeratedChoice, Truth
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
@@ -134,31 +129,46 @@ def _alike_traces(
 
     There may be further traces of the same shape among them.
     """
-    makers: list[Callable[[], AlikeTraces]] = []
+    makers: list[tuple[Sequence[int], Callable[[], JoinedTraces]]] = []
     if isinstance(items, Block) and items.outline is not None:
-        groups = groups_of(items, items.outline)
-        makers += [partial(traces_of_group, group, vocabulary) for group in groups]
+        for own in _shapes(items, items.outline):
+            makers += [(own, partial(joined_rows, items, items.outline, np.array(own), vocabulary))]
         wanted = [place for place in wanted if place in items.partial]
     elif isinstance(items, LineBlock):
-        makers += [partial(traces_of_lines, items, lines, vocabulary) for lines in items.alike]
+        for lines in items.alike:
+            makers += [(lines.lines.tolist(), partial(joined_lines, items, lines, vocabulary))]
         wanted = [place for place in wanted if items.items[place] is not None]
-    for made in makers:
+    for places, joined in makers:
         with suppress(UnencodableError):
-            alike = made()
-            yield alike.places, joined_columns(alike, vocabulary)
+            yield places, joined()
     shapes: dict[object, tuple[list[int], list[Trace]]] = {}
     for place in wanted:
         trace = items[place]
         assert isinstance(trace, Trace), "it has been judged"
         if vocabulary.constants or vocabulary.implied:
-            trace = with_derived_values(spelled_out(trace, vocabulary), vocabulary)
-        key = shape_of(trace), trace.ends, trace.told
+            trace = with_all_values(trace, vocabulary)
+        key = _shape_of(trace), trace.ends, trace.told
         places, traces = shapes.setdefault(key, ([], []))
         places.append(place)
         traces.append(trace)
     for places, traces in shapes.values():
         with suppress(UnencodableError):
             yield places, joined_states(traces, vocabulary)
+
+
+def _shapes(block: Block, outline: BlockPresence) -> list[list[int]]:
+    """The traces of a block of which everything is known, grouped by shape."""
+    shapes: dict[object, list[int]] = {}
+    for trace in sorted(set(range(len(block))) - block.partial):
+        shapes.setdefault(outline.shape_of(trace), []).append(trace)
+    return [*shapes.values()]
+
+
+def _shape_of(trace: Trace) -> tuple[object, ...]:
+    """The shape of a trace: step, object types in order, and presence, without names."""
+    places = {name: place for place, name in enumerate(trace.objects)}
+    stretches = [(places[name], stretch) for name, stretch in trace.present.items()]
+    return trace.step_s, tuple(trace.objects.values()), tuple(sorted(stretches))
 
 
 _NOT_WANTED = Verdict("", ())
@@ -169,7 +179,7 @@ def _facts(
     step_s: float,
     rulebook: CompiledRulebook,
     verdicts: Sequence[Verdict],
-    names: Sequence[Names],
+    names: Sequence[tuple[str, ...]],
 ) -> list[DriveFacts]:
     exposures = alike_exposures(truth, step_s, rulebook, verdicts, names)
     columns = truth.tables.last.tolist(), road_classes(truth.tables), exposures

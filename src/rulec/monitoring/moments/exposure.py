@@ -21,7 +21,6 @@ from rulec.diagnostics import SourceLocation
 from rulec.logic.bounds import in_steps
 from rulec.logic.opportunities import breach_of
 from rulec.logic.semantics import steps_to_settle
-from rulec.monitoring.batch.trace_groups import Names
 from rulec.monitoring.moments.stretches import (
     Stretches,
     most_violated,
@@ -80,7 +79,7 @@ def alike_exposures(
     step_s: float,
     rulebook: CompiledRulebook,
     verdicts: Sequence[Verdict],
-    names: Sequence[Names],
+    names: Sequence[tuple[str, ...]],
 ) -> list[dict[str, Exposure]]:
     """The exposures of traces of one shape; ``names`` are the object names of each."""
     outcomes: dict[str, dict[Chosen, Outcome]] = {}

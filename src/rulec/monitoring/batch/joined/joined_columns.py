@@ -1,164 +1,223 @@
-"""Traces of one shape, given as columns, laid end to end."""
+"""Traces given as columns, as rows of tables, or as lines written alike, laid end to end."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from itertools import chain, product
-from typing import Any, NamedTuple, TypeAlias
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
-from rulec.array_types import Flags, Indices
-from rulec.monitoring.batch.alike_traces import AlikeTraces
-from rulec.monitoring.batch.columns.encoded_columns import PartlyKnown, UnencodableError
-from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
-from rulec.monitoring.batch.joined.piece_columns import PieceColumns
-from rulec.trace.trace_arrays import starts_of
-from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns
-from rulec.vocabulary import Vocabulary
+from rulec.array_types import Indices
+from rulec.diagnostics import RulecError
+from rulec.monitoring.batch.columns.column_states import trace_at
+from rulec.monitoring.batch.columns.encoded_columns import (
+    PartlyKnown,
+    UnencodableError,
+    column_dtype,
+    encode_values,
+)
+from rulec.monitoring.batch.joined.given_values import GivenValues, piece_of
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind, with_all_values
+from rulec.monitoring.batch.joined.trace_places import TracePlaces
+from rulec.trace import Trace
+from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
+from rulec.trace.formats.table_blocks import NOBODY, Block, BlockPresence, Coded, Column
+from rulec.trace.plain_arrays import ranges
+from rulec.trace.trace_columns import Array, TraceColumns
+from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 
-_Items: TypeAlias = tuple[str, ...]
 
-_Stretch: TypeAlias = tuple[int, int | None]
-"""The first and the last state in which objects are present, in all traces; None for its end."""
+def joined_columns(columns: TraceColumns, vocabulary: Vocabulary) -> JoinedTraces:
+    """Traces that a caller gives as columns, in their order, with their numbers as ids.
 
-
-def joined_columns(alike: AlikeTraces, vocabulary: Vocabulary) -> JoinedTraces:
-    """Traces of one shape, in the order of their columns.
-
-    Raises UnencodableError if a value about two objects is missing, or one about more is there.
+    Raises UnencodableError as ``piece_of``.
     """
-    own, layout = alike.columns, alike.columns.layout
-    n_traces, objects = layout.n_traces, list(own.objects)
-    _check_pairs(own, vocabulary)
-    of_each: dict[_Items, _Stretch] = {(x,): own.present.get(x, (0, None)) for x in objects}
-    numbers = {item: number for number, item in enumerate(objects)}
-    said = {items for _, items in own.values if len(items) == 2}
-    pairs = sorted((numbers[first], numbers[second]) for first, second in said)
-    of_pairs: dict[_Items, _Stretch] = {}
-    for x, y in pairs:
-        stretch = _both(own, objects[x], objects[y])
-        if stretch is not None:
-            of_pairs[objects[x], objects[y]] = stretch
-    of_world: dict[_Items, _Stretch] = {(): (0, None)}
-    places_by_arity = [
-        _GroupPlaces.of(stretches, layout) for stretches in (of_world, of_each, of_pairs)
-    ]
-    columns = PieceColumns()
-    for name in dict.fromkeys(name for name, _ in own.values):
-        declaration = vocabulary.declarations[name]
-        arity = len(declaration.parameters)
-        places = places_by_arity[arity]
-        given = [items for items in places.groups if (name, items) in own.values]
-        if not given:
-            continue  # about two that never meet
-        suits = absent = None
-        if arity == 1:
-            suits = np.tile([items in given for items in places.groups], n_traces)
-        elif arity == 2 and len(given) < len(places.groups) and declaration.default is not None:
-            absent = places.without(given)
-        columns.add_encoded(places.column(own, name, given), declaration, suits, absent)
-    begins = len(objects) * np.arange(n_traces)[:, None, None]
-    met = [(numbers[first], numbers[second]) for first, second in of_pairs]
-    chosen = np.array(met, dtype=np.intp).reshape(1, -1, 2) + begins
+    layout, objects = columns.layout, list(columns.objects)
+    lengths = layout.lengths.astype(np.intp)
+    steps = np.arange(layout.n_steps).repeat(np.diff(layout.starts))
+    traces = np.arange(layout.n_states) - layout.starts[steps]
+    spans: Any = np.zeros((layout.n_traces, len(objects), 2), dtype=np.intp)
+    spans[:, :, 1] = lengths[:, None] - 1
+    for number, item in enumerate(objects):
+        spans[:, number] = columns.present.get(item, spans[:, number])
+    n_objects, spans = [len(objects)] * layout.n_traces, spans.reshape(-1, 2)
+    types = [*columns.objects.values()] * layout.n_traces
+    places = TracePlaces(lengths, n_objects, spans, types, vocabulary)
+    given: dict[str, list[GivenValues]] = {}
+    for key, values in columns.values.items():
+        name, items = key
+        if columns.objects.keys() >= set(items):
+            about = [len(objects) * traces + objects.index(item) for item in items]
+            column = PartlyKnown(values, columns.upper.get(key), columns.unknown.get(key))
+            own = GivenValues(places.begins[traces] + steps, tuple(about), column)
+            given.setdefault(name, []).append(own)
+    names = {name for name, _ in columns.values}
     return JoinedTraces(
-        kind=TraceKind(own.step_s, alike.ends, None),
-        lengths=layout.lengths.astype(np.intp),
-        n_objects=[len(objects)] * n_traces,
-        spans=places_by_arity[1].spans,
-        types=[*own.objects.values()] * n_traces,
-        names=list(chain.from_iterable(map(alike.names, range(n_traces)))),
-        pieces=(columns.piece(len(objects) * n_traces, chosen.reshape(-1, 2)),),
-        trace=alike.traces,
+        kind=TraceKind(columns.step_s, "complete", None),
+        lengths=lengths,
+        n_objects=n_objects,
+        spans=spans,
+        types=types,
+        names=objects * layout.n_traces,
+        pieces=(piece_of(given, places),),
+        id_of=str,
+        says=lambda _, name: name in names,
+        trace=lambda n: with_all_values(trace_at(columns, n, vocabulary), vocabulary),
         derived=True,
     )
 
 
-def _both(columns: TraceColumns, first: str, second: str) -> _Stretch | None:
-    """When two objects are both present; None if they never are."""
-    since, until = zip(*[columns.present.get(x, (0, None)) for x in (first, second)], strict=True)
-    ends = [end for end in until if end is not None]
-    begin, end = max(since), min(ends, default=None)
-    return None if end is not None and end < begin else (begin, end)
+def check_arrays(columns: TraceColumns, vocabulary: Vocabulary) -> None:
+    """Raise ValueError for an array that fits no name of the vocabulary, or not the layout."""
+    for key, values in columns.values.items():
+        (name, items), n_states = key, columns.layout.n_states
+        what = f"the array for `{name}`{' of `' + ', '.join(items) + '`' if items else ''}"
+        declaration = vocabulary.declarations.get(name)
+        if declaration is None:
+            raise ValueError(f"{what} is of no name that `{vocabulary.name}` has")
+        most = len(declaration.parameters)
+        if len(items) != most:
+            raise ValueError(f"{what} is about {len(items)} objects, not {most}")
+        for column in (values, columns.unknown.get(key, values), columns.upper.get(key, values)):
+            if len(column) != n_states:
+                raise ValueError(f"{what} has {len(column)} entries, for {n_states} states")
+        if isinstance(declaration, Enumeration):
+            most = len(declaration.values)
+            wrong = values[(values < 0) | (values >= most)]
+            if len(wrong):
+                raise ValueError(
+                    f"{what} has place {wrong[0]}, of {most} values, which count from 0"
+                )
 
 
-def _check_pairs(columns: TraceColumns, vocabulary: Vocabulary) -> None:
-    """Raise UnencodableError if a value about a pair is missing, or one about more is there."""
-    if any(len(items) > 2 for _, items in columns.values):
-        raise UnencodableError
-    for name in {name for name, items in columns.values if len(items) == 2}:
-        declaration = vocabulary.declarations[name]
-        if declaration.default is not None:
-            continue
-        fitting = [
-            [item for item, own in columns.objects.items() if vocabulary.is_subtype(own, kind)]
-            for kind in declaration.parameters
-        ]
-        for first, second in product(*fitting):
-            is_said = first == second or (name, (first, second)) in columns.values
-            if not is_said and _both(columns, first, second) is not None:
-                raise UnencodableError
+def joined_lines(block: LineBlock, lines: AlikeLines, vocabulary: Vocabulary) -> JoinedTraces:
+    """The traces of some lines of a block, in their order.
 
-
-class _GroupPlaces(NamedTuple):
-    """The places of values about some ``groups`` of objects: trace by trace, group by group.
-
-    ``spans`` are the first and last state of each; ``places`` has for each value its place in
-    columns that are laid out step by step, ``of_groups`` which values are about each group.
+    Raises UnencodableError as ``piece_of``.
     """
-
-    groups: Sequence[_Items]
-    spans: Indices
-    places: Indices
-    of_groups: Sequence[Indices]
-
-    @staticmethod
-    def of(stretches: Mapping[_Items, _Stretch], layout: Layout) -> _GroupPlaces:
-        """The places for groups that are present in these stretches."""
-        n_traces, n_groups = layout.n_traces, len(stretches)
-        of_traces: Any = np.empty((n_traces, n_groups, 2), dtype=np.intp)
-        for number, (first, last) in enumerate(stretches.values()):
-            of_traces[:, number, 0] = first
-            of_traces[:, number, 1] = layout.lengths - 1 if last is None else last
-        spans: Indices = of_traces.reshape(-1, 2)
-        starts = starts_of(spans)
-        lengths = starts[1:] - starts[:-1]
-        steps = np.arange(starts[-1]) + (spans[:, 0] - starts[:-1]).repeat(lengths)
-        traces = np.arange(n_traces).repeat(n_groups).repeat(lengths)
-        group_of = np.tile(np.arange(n_groups), n_traces).repeat(lengths)
-        of_groups = [(group_of == number).nonzero()[0] for number in range(n_groups)]
-        return _GroupPlaces(list(stretches), spans, layout.starts[steps] + traces, of_groups)
-
-    def column(self, columns: TraceColumns, name: str, given: Sequence[_Items]) -> PartlyKnown:
-        """A name's values about the groups that it is given for."""
-        keys = {self.groups.index(items): (name, items) for items in given}
-        values = self._merged(keys, columns.values)
-        upper = unknown = None
-        if any(key in columns.upper for key in keys.values()):
-            upper = self._merged(keys, {**columns.values, **columns.upper})
-        dark = {number: key for number, key in keys.items() if key in columns.unknown}
-        if dark:
-            unknown = self._merged(dark, columns.unknown)
-        return PartlyKnown(values, upper, unknown)
-
-    def without(self, given: Sequence[_Items]) -> Flags:
-        """The values that are not about these groups."""
-        others: Flags = np.ones(len(self.places), dtype=bool)
-        for items in given:
-            others[self.of_groups[self.groups.index(items)]] = False
-        return others
-
-    def _merged(self, keys: Mapping[int, Key], columns: Mapping[Key, Array]) -> Array:
-        """One column for all groups, of the columns of some."""
-        if len(self.groups) == 1:
-            (key,) = keys.values()
-            return columns[key].take(self.places)
-        merged: Array = np.zeros(len(self.places), dtype=_dtype(columns[x] for x in keys.values()))
-        for number, key in keys.items():
-            own = self.of_groups[number]
-            merged[own] = columns[key].take(self.places[own])
-        return merged
+    headings, lengths = lines.headings, lines.lengths.astype(np.intp)
+    n_traces, of_each = len(headings), len(headings[0].objects)
+    spans = np.zeros((n_traces * of_each, 2), dtype=np.intp)
+    spans[:, 1] = (lengths - 1).repeat(of_each)
+    types = [kind for heading in headings for kind in heading.objects.values()]
+    places = TracePlaces(lengths, [of_each] * n_traces, spans, types, vocabulary)
+    states, traces = np.arange(places.n_states), np.arange(n_traces).repeat(lengths)
+    given: dict[str, list[GivenValues]] = {}
+    for (name, items), column in lines.columns.items():
+        about = tuple(of_each * traces + item for item in items)
+        own = GivenValues(states, about, _encoded(column, slice(None), name, vocabulary))
+        given.setdefault(name, []).append(own)
+    return JoinedTraces(
+        kind=TraceKind(headings[0].step_s, headings[0].ends, None),
+        lengths=lengths,
+        n_objects=[of_each] * n_traces,
+        spans=spans,
+        types=types,
+        names=[item for heading in headings for item in heading.objects],
+        pieces=(piece_of(given, places),),
+        id_of=lambda number: headings[number].id,
+        says=lambda _, name: name in lines.names,
+        trace=_traces(block, lines.lines, vocabulary),
+        derived=True,
+    )
 
 
-def _dtype(columns: Iterable[Array]) -> np.dtype[Any]:
-    return np.result_type(*columns)
+def joined_rows(
+    block: Block, presence: BlockPresence, traces: Indices, vocabulary: Vocabulary
+) -> JoinedTraces:
+    """Some traces of a block, of one kind, in their order.
+
+    Raises UnencodableError as ``piece_of``.
+    """
+    lengths = presence.length[traces].astype(np.intp)
+    n_objects = np.diff(presence.starts)[traces]
+    objects, firsts = ranges(presence.starts[traces], n_objects)
+    spans = presence.stretches[objects].astype(np.intp)
+    is_always = (spans[:, 0] == NOBODY).nonzero()[0]
+    spans[is_always] = 0
+    spans[is_always, 1] = (lengths - 1).repeat(n_objects)[is_always]
+    types = [presence.types[item] for item in objects.tolist()]
+    places = TracePlaces(lengths, n_objects, spans, types, vocabulary)
+    number_of = np.full(len(block), -1)
+    number_of[traces] = np.arange(len(traces))
+    rows = (number_of[presence.trace] >= 0).nonzero()[0]
+    numbers = number_of[presence.trace[rows]]
+    states, of_rows = places.begins[numbers] + presence.step[rows], firsts[numbers]
+    given: dict[str, list[GivenValues]] = {}
+    known: dict[bytes, tuple[Indices, Indices, tuple[Indices, ...]]] = {}
+    for name in block.table.names:
+        said = block.columns[name].given[rows]
+        if not said.any():
+            continue
+        key = said.tobytes()
+        if key not in known:
+            about = [
+                _given(own[rows[said]], of_rows[said]) for own in (presence.item, presence.other)
+            ]
+            known[key] = rows[said], states[said], tuple(x for x in about if x is not None)
+        own_rows, own_states, own_objects = known[key]
+        column = _encoded(block.columns[name], own_rows, name, vocabulary)
+        given[name] = [GivenValues(own_states, own_objects, column)]
+    starts, table = block.starts.tolist(), block.table.names
+
+    def says(number: int, name: str) -> bool:
+        start, stop = starts[traces[number]], starts[traces[number] + 1]
+        return name in table and bool(block.columns[name].given_at(slice(start, stop)).any())
+
+    return JoinedTraces(
+        kind=TraceKind(float(presence.step_s[traces[0]]), presence.ends[traces[0]], None),
+        lengths=lengths,
+        n_objects=n_objects.tolist(),
+        spans=spans,
+        types=types,
+        names=[presence.objects[item] for item in objects.tolist()],
+        pieces=(piece_of(given, places),),
+        id_of=lambda number: presence.names[traces[number]],
+        says=says,
+        trace=_traces(block, traces, vocabulary),
+        derived=True,
+    )
+
+
+def _given(items: Indices, firsts: Indices) -> Indices | None:
+    """The numbers of the objects of rows; None for none. UnencodableError if only some have one."""
+    if items.max(initial=NOBODY) == NOBODY:
+        return None
+    if items.min() == NOBODY:
+        raise UnencodableError
+    return items + firsts
+
+
+def _traces(
+    block: Sequence[Trace | RulecError], places: Indices, vocabulary: Vocabulary
+) -> Callable[[int], Trace]:
+    def trace(number: int) -> Trace:
+        item = block[int(places[number])]
+        assert isinstance(item, Trace), "it has been read"
+        return with_all_values(item, vocabulary)
+
+    return trace
+
+
+def _encoded(
+    column: Column, rows: Indices | slice, name: str, vocabulary: Vocabulary
+) -> PartlyKnown:
+    """The given values in some rows, encoded. Raises UnencodableError."""
+    declaration = vocabulary.declarations.get(name)
+    if declaration is None:
+        raise UnencodableError
+    return PartlyKnown(_values(column, rows, declaration), None, None)
+
+
+def _values(column: Column, rows: Indices | slice, declaration: Declaration) -> Array:
+    if isinstance(column, Coded):
+        codes = column.codes[rows]
+        used = np.bincount(codes, minlength=len(column.values)) > 0
+        values = [value for value, is_used in zip(column.values, used, strict=True) if is_used]
+        table = np.zeros(len(used), dtype=column_dtype(declaration))
+        table[used] = encode_values(values, declaration)
+        return table.take(codes)
+    numbers = column.numbers[rows]
+    if isinstance(declaration, Enumeration | Signal) or not np.isfinite(numbers).all():
+        raise UnencodableError
+    return numbers

@@ -18,7 +18,6 @@ from rulec.monitoring.batch.joined.piece_columns import NOT_GIVEN, PieceColumns
 from rulec.trace import Trace
 from rulec.vocabulary import Declaration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
-from rulec.vocabulary.vocabulary_model import least_value
 
 _ByObject: TypeAlias = Mapping[str, Any]
 
@@ -75,6 +74,8 @@ def joined_states(traces: Sequence[Trace], vocabulary: Vocabulary) -> JoinedTrac
         types=[kind for trace in traces for kind in trace.objects.values()],
         names=[name for trace in traces for name in trace.objects],
         pieces=(columns.piece(sum(n_objects), _indices(pairs)),),
+        id_of=lambda number: traces[number].id,
+        says=lambda number, name: any(name in state for state in traces[number].states),
         trace=traces.__getitem__,
         derived=True,
     )
@@ -181,28 +182,13 @@ def _add_pairs(
             if since <= until:
                 pairs.append((begin + first, begin + second))
                 pair = items[first], items[second]
-                for (declaration, _), found, column in zip(of_pairs, own, values, strict=True):
-                    column += _of_pair(pair, found, cast, declaration)[since : until + 1]
+                for found, column in zip(own, values, strict=True):
+                    of_first = found.get(pair) or [_NOBODY] * len(cast.trace.states)
+                    column += [x.get(items[second], NOT_GIVEN) for x in of_first[since : until + 1]]
         begin += len(items)
     for (declaration, _), column in zip(of_pairs, values, strict=True):
         columns.add(column, declaration)
     return pairs
-
-
-def _of_pair(
-    pair: tuple[str, str],
-    found: Mapping[tuple[str, str], Sequence[_ByObject]],
-    cast: _TraceObjects,
-    declaration: Declaration,
-) -> list[Any]:
-    """A name's values about a pair in all states; anything where they are never read."""
-    first, second = pair
-    if found.get(pair):
-        return [about.get(second, NOT_GIVEN) for about in found[pair]]
-    kinds = declaration.parameters
-    fits = first in cast.fitting(kinds[0]) and second in cast.fitting(kinds[1])
-    value = NOT_GIVEN if fits and first != second else least_value(declaration)
-    return [value] * len(cast.trace.states)
 
 
 def _by_pair(

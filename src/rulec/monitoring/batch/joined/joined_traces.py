@@ -68,8 +68,9 @@ class JoinedTraces:
 
     ``lengths`` and ``n_objects`` are each trace's numbers of states and of objects; ``types``,
     ``names`` and ``spans`` (objects x 2: first and last state in the trace) are of all objects.
-    ``trace`` makes the trace of a number, with what follows from its values by facts; the columns
-    have this, too, if they are ``derived``.
+    ``id_of`` gives the id of the trace of a number, ``says`` whether a state of it has a name, and
+    ``trace`` the trace, with what follows from its values by facts; the columns have this, too, if
+    they are ``derived``.
     """
 
     kind: TraceKind
@@ -79,17 +80,21 @@ class JoinedTraces:
     types: Sequence[str]
     names: Sequence[str]
     pieces: Sequence[JoinedPiece]
+    id_of: Callable[[int], str]
+    says: Callable[[int, str], bool]
     trace: Callable[[int], Trace]
     derived: bool
+
+    def objects_of(self, number: int) -> Mapping[str, str]:
+        """The objects of the trace of a number, with their types."""
+        begin = sum(self.n_objects[:number])
+        own = slice(begin, begin + self.n_objects[number])
+        return dict(zip(self.names[own], self.types[own], strict=True))
 
     @staticmethod
     def of_arrays(traces: Sequence[TraceArrays], vocabulary: Vocabulary) -> JoinedTraces:
         """Traces in arrays, which are of one kind."""
         example = traces[0]
-
-        def made(number: int) -> Trace:
-            return with_derived_values(spelled_out(traces[number].trace(), vocabulary), vocabulary)
-
         return JoinedTraces(
             kind=TraceKind(example.step_s, example.ends, example.told),
             lengths=np.array([trace.n_states for trace in traces], dtype=np.intp),
@@ -98,9 +103,16 @@ class JoinedTraces:
             types=[kind for trace in traces for kind in trace.objects.values()],
             names=[name for trace in traces for name in trace.objects],
             pieces=tuple(_joined_pieces(traces)),
-            trace=made,
+            id_of=lambda number: traces[number].id,
+            says=lambda number, name: traces[number].says(name),
+            trace=lambda number: with_all_values(traces[number].trace(), vocabulary),
             derived=not vocabulary.implied,
         )
+
+
+def with_all_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
+    """The trace with what follows from its values by facts. Raises RulecError R0503."""
+    return with_derived_values(spelled_out(trace, vocabulary), vocabulary)
 
 
 def side_by_side(traces: Sequence[TraceArrays]) -> list[int]:

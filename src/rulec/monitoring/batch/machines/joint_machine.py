@@ -44,39 +44,26 @@ LetteredMachine = tuple[MealyMonitor, tuple[int, ...]]
 def join_machines(machines: Sequence[LetteredMachine]) -> Iterator[JointMachine]:
     """Join neighbouring machines into products, in their order.
 
-    Neighbours are joined while the product has at most ``MOST_ENTRIES``; a machine that is larger
-    by itself stays alone.
+    A product has at most ``MOST_ENTRIES``, else each half is joined; a machine that is larger by
+    itself stays alone.
     """
     for start in range(0, len(machines), MOST_VERDICTS):
-        members = tuple(range(start, min(start + MOST_VERDICTS, len(machines))))
-        joint = _joined(members, machines)
-        if joint is not None:
-            yield joint
-        else:
-            yield from _one_by_one(members, machines)
+        yield from _joined(tuple(range(len(machines)))[start : start + MOST_VERDICTS], machines)
 
 
-def _one_by_one(
-    members: Sequence[int], machines: Sequence[LetteredMachine]
+def _joined(
+    members: tuple[int, ...], machines: Sequence[LetteredMachine]
 ) -> Iterator[JointMachine]:
-    joint: JointMachine | None = None
-    for place in members:
-        larger = None
-        if joint is not None:
-            larger = _joined((*joint.members, place), machines)
-            if larger is None:
-                yield joint
-        joint = larger or _joined((place,), machines)
-        if joint is None:
-            machine, letters = machines[place]
-            outputs = tuple(tuple(map(int, row)) for row in machine.outputs)
-            joint = JointMachine((place,), letters, machine.successors, outputs)
+    joint = _join(members, tuple([machines[member] for member in members]))
     if joint is not None:
         yield joint
-
-
-def _joined(members: tuple[int, ...], machines: Sequence[LetteredMachine]) -> JointMachine | None:
-    return _join(members, tuple([machines[member] for member in members]))
+    elif len(members) == 1:
+        machine, letters = machines[members[0]]
+        outputs = tuple(tuple(map(int, row)) for row in machine.outputs)
+        yield JointMachine(members, letters, machine.successors, outputs)
+    else:
+        for half in (members[: len(members) // 2], members[len(members) // 2 :]):
+            yield from _joined(half, machines)
 
 
 @lru_cache(maxsize=256)

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise, repeat
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ from rulec.trace.trace_columns import Array, Layout
 Rows = tuple[tuple[int, ...], ...]
 """A number for each letter, for each state."""
 
-_MOST_ENTRIES = 1 << 16
+MOST_ENTRIES = 1 << 16
 """The most entries of a table: what two bytes can number."""
 
 _LONGEST = 16
@@ -50,15 +51,6 @@ def steps_of(layout: Layout, first: int, last: int | None) -> list[Step]:
     ]
 
 
-def is_cheaper(n_states: int, n_letters: int, n_traces: int) -> bool:
-    """Whether one look-up of two steps is cheaper than two look-ups."""
-    return n_states * n_letters**2 <= _most_entries(n_traces)
-
-
-def _most_entries(n_traces: int) -> int:
-    return min(_MOST_ENTRIES, n_traces // _WORTH)
-
-
 def run_multi_step(
     successors: Rows, verdicts: Rows, letters: Array, steps: Sequence[Step]
 ) -> NDArray[np.uint8]:
@@ -67,13 +59,16 @@ def run_multi_step(
     ``letters`` is the column of all letters. Runs start in state 0.
     """
     n_states, n_letters = len(successors), len(successors[0])
-    result = np.empty(steps[0].n_traces, dtype=np.uint8)
-    blocks = list(_step_blocks(steps, n_states, n_letters, _most_entries(steps[0].n_traces)))
+    dtype = np.uint16 if n_states * n_letters <= MOST_ENTRIES else np.intp
+    result = np.empty(steps[0].n_traces if steps else 0, dtype=np.uint8)
+    most = min(MOST_ENTRIES, len(result) // _WORTH)
+    blocks = list(_step_blocks(steps, n_states, n_letters, most))
+    tables: dict[tuple[int, ...], Array] = {}
     state: Array | None = None
     for place, block in enumerate(blocks):
-        entry = letters[block[0].part].astype(np.uint16)
+        entry = letters[block[0].part].astype(dtype)
         for step in block[1:]:
-            entry *= np.uint16(n_letters)
+            entry *= dtype(n_letters)
             entry += letters[step.part]
         # Only before its first step is a run certainly in one state.
         begins = n_states if place else 1
@@ -84,8 +79,10 @@ def run_multi_step(
             table = _verdicts(successors, verdicts, len(block), begins)
             result[end.n_continuing : end.n_traces] = table.take(entry[end.n_continuing :])
         if end.n_continuing:
-            table = _next_states(successors, len(block), begins, len(blocks[place + 1]))
-            state = table.take(entry[: end.n_continuing])
+            key = len(block), begins, len(blocks[place + 1])
+            if key not in tables:
+                tables[key] = _next_states(successors, *key, dtype)
+            state = tables[key].take(entry[: end.n_continuing])
     return result
 
 
@@ -93,13 +90,15 @@ def run_multi_step(
 
 
 @lru_cache(maxsize=64)
-def _next_states(successors: Rows, length: int, begins: int, next_length: int) -> Array:
+def _next_states(
+    successors: Rows, length: int, begins: int, next_length: int, dtype: type[Any]
+) -> Array:
     """The table from a start state and ``length`` letters to the next state.
 
     A state is given as its first entry in the table of the next leap.
     """
-    table = np.array(successors, dtype=np.uint16)
-    scale = np.uint16(len(successors[0]) ** next_length)
+    table = np.array(successors, dtype=dtype)
+    scale = dtype(len(successors[0]) ** next_length)
     entries: Array = _after(table, successors, length, begins) * scale
     return entries
 
@@ -113,7 +112,7 @@ def _after(last: Array, successors: Rows, length: int, begins: int) -> Array:
     """The entries of ``last`` for all words of ``length`` letters."""
     if length == 1:
         return last[:begins].ravel()
-    onward = np.array(successors, dtype=np.uint16)
+    onward = np.array(successors, dtype=np.intp)
     before = onward[:begins]
     for _ in range(length - 2):
         before = onward[before].reshape(begins, -1)

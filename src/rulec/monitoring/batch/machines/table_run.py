@@ -6,10 +6,9 @@ first run from every state, then from the actual one.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from math import isqrt
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +16,12 @@ from numpy.typing import NDArray
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.monitoring.batch.machines.joint_machine import JointMachine
 from rulec.monitoring.batch.machines.multi_step_tables import (
+    MOST_ENTRIES,
     Rows,
-    Step,
-    is_cheaper,
     run_multi_step,
     steps_of,
 )
 from rulec.trace.trace_columns import Array, Layout, smallest_unsigned
-
-_BYTE = 256
 
 _FEW = 16
 """With so few traces side by side, a joint step takes longer than one step of each."""
@@ -55,17 +51,11 @@ def run(
     if run_alone(layout.n_traces, layout.n_steps - first, n_states):
         return _run_long(joint, cells, layout, first, last)
     steps = steps_of(layout, first, last)
-    if is_cheaper(n_states, n_cells, layout.n_traces):
+    if n_states * n_cells <= MOST_ENTRIES:
         # The letters of cells are built into the tables.
         return run_multi_step(*_by_cells(joint), cells, steps)
-    if n_states * n_cells <= _BYTE and cells.dtype == np.uint8:
-        return _run_bytes(joint, joint.letters, cells, steps)
-    letters = letters_of_cells(cells, joint.letters)
-    if is_cheaper(n_states, joint.n_letters, layout.n_traces):
-        return run_multi_step(joint.successors, joint.verdicts, letters, steps)
-    if n_states * joint.n_letters <= _BYTE:
-        return _run_bytes(joint, range(joint.n_letters), letters, steps)
-    return _run_wide(joint, letters, steps)
+    letters = np.array(joint.letters, dtype=smallest_unsigned(joint.n_letters)).take(cells)
+    return run_multi_step(joint.successors, joint.verdicts, letters, steps)
 
 
 @lru_cache(maxsize=64)
@@ -73,50 +63,6 @@ def _by_cells(joint: JointMachine) -> tuple[Rows, Rows]:
     successors = [tuple([row[letter] for letter in joint.letters]) for row in joint.successors]
     verdicts = [tuple([row[letter] for letter in joint.letters]) for row in joint.verdicts]
     return tuple(successors), tuple(verdicts)
-
-
-def letters_of_cells(cells: Array, letters: Sequence[int]) -> Array:
-    """The letter of every cell, as the smallest unsigned integers."""
-    dtype = smallest_unsigned(max(letters, default=0) + 1)
-    if cells.dtype == dtype == np.uint8:
-        return np.frombuffer(cells.tobytes().translate(_padded(letters)), np.uint8)
-    return np.take(np.array(letters, dtype=dtype), cells)
-
-
-def _run_bytes(
-    joint: JointMachine,
-    letters: Sequence[int],
-    column: NDArray[np.uint8],
-    steps: Sequence[Step],
-) -> NDArray[np.uint8]:
-    """Run a small machine by byte translation, in a loop of the C library."""
-    width = len(letters)
-    successors = _padded([row[letter] * width for row in joint.successors for letter in letters])
-    verdicts = _padded([row[letter] for row in joint.verdicts for letter in letters])
-    ends = np.empty(steps[0].n_traces if steps else 0, dtype=np.uint8)
-    state = np.zeros(len(ends), dtype=np.uint8)
-    for step in steps:
-        goes_on = step.n_continuing
-        entry = state[: step.n_traces]
-        entry = entry + column[step.part]
-        ends[goes_on : step.n_traces] = entry[goes_on:]
-        if goes_on:
-            state = np.frombuffer(entry[:goes_on].tobytes().translate(successors), np.uint8)
-    return np.frombuffer(ends.tobytes().translate(verdicts), np.uint8)
-
-
-def _run_wide(joint: JointMachine, column: Array, steps: Sequence[Step]) -> NDArray[np.uint8]:
-    width = joint.n_letters
-    dtype = np.uint16 if len(joint.successors) * width <= 1 << 16 else np.intp
-    successors = np.array(joint.successors, dtype=dtype).ravel() * dtype(width)
-    verdicts = np.array(joint.verdicts, dtype=np.uint8).ravel()
-    results = np.empty(steps[0].n_traces if steps else 0, dtype=np.uint8)
-    state = np.zeros(len(results), dtype=dtype)
-    for step in steps:
-        entry = state[: step.n_traces] + column[step.part]
-        results[step.n_continuing : step.n_traces] = verdicts.take(entry[step.n_continuing :])
-        state = successors.take(entry[: step.n_continuing])
-    return results
 
 
 def _run_long(
@@ -176,43 +122,41 @@ def _one_by_one(successors: Sequence[Sequence[int]], letters: Array) -> NDArray[
     return np.array(numbers, dtype=np.intp)
 
 
-def first_lost_of_one(machine: MealyMonitor, letters: Array) -> int:
-    """The index of the letter at which a word is lost; -1 if it is not."""
-    if machine.rejecting_sink is None:
-        return -1
-    # A word that ends here may be accepted although no longer word is: `weak next false`.
-    outputs = np.array(machine.outputs, dtype=bool)
-    lost = (np.array(machine.successors) == machine.rejecting_sink) & ~outputs
-    places = np.flatnonzero(lost[visited(machine.successors, letters), letters])
-    return int(places[0]) if len(places) else -1
-
-
 def first_lost(
-    machine: MealyMonitor, letters: Sequence[int], by_step: Iterable[Array], lengths: NDArray[Any]
+    machine: MealyMonitor,
+    letters: Sequence[int],
+    cells: Array,
+    layout: Layout,
+    chosen: NDArray[np.intp],
+    *,
+    stretch: tuple[int, int | None],
 ) -> NDArray[np.int64]:
-    """The step at which each trace is lost, counted from its first step here; -1 if it is not.
+    """The step at which each of the ``chosen`` traces is lost in a stretch; -1 if it is not.
 
-    ``letters`` has for each cell the class of its letter, ``by_step`` for each step the cells of
-    the traces that have it; these come first, since ``lengths`` descend.
+    ``letters`` has for each cell the class of its letter.
     """
-    if machine.rejecting_sink is None:
-        return np.full(len(lengths), -1, dtype=np.int64)
-    width = len(machine.successors[0])
-    successors = np.array(machine.successors, dtype=np.intp).ravel() * width
+    first, last = stretch
+    ends = layout.lengths[chosen] if last is None else np.full(len(chosen), last + 1)
+    if machine.rejecting_sink is None or not len(chosen):
+        return np.full(len(chosen), -1, dtype=np.int64)
+    successors, classes = np.array(machine.successors, dtype=np.intp), np.array(letters)
     # A word that ends here may be accepted although no longer word is: `weak next false`.
-    lost = (successors == machine.rejecting_sink * width) & ~np.array(
-        machine.outputs, dtype=bool
-    ).ravel()
-    classes = np.array(letters, dtype=np.intp)
-    state = np.zeros(len(lengths), dtype=np.intp)
-    kept = np.zeros(len(lengths), dtype=np.int64)
-    for cells in by_step:
-        entry = state[: len(cells)] + classes.take(cells)
+    lost = (successors == machine.rejecting_sink) & ~np.array(machine.outputs, dtype=bool)
+    if run_alone(len(ends), int(ends[0]) - first, len(successors)):
+        found = []
+        for trace in chosen.tolist():
+            word = classes.take(cells[layout.places(trace, first, last)])
+            places = lost[visited(machine.successors, word), word].nonzero()[0]
+            found.append(first + int(places[0]) if len(places) else -1)
+        return np.array(found, dtype=np.int64)
+    width = len(machine.successors[0])
+    state = np.zeros(len(chosen), dtype=np.intp)
+    kept = np.full(len(chosen), first, dtype=np.int64)
+    # The ends are in descending order: those after a step come first.
+    for step in range(first, int(ends[0])):
+        there = chosen[: np.searchsorted(-ends, -step)]
+        entry = state[: len(there)] * width + classes.take(cells[layout.starts[step] + there])
         # Once lost, always lost: the number of kept steps is the index of the first lost one.
-        kept[: len(cells)] += ~lost.take(entry)
+        kept[: len(there)] += ~lost.take(entry)
         state = successors.take(entry)
-    return np.where(kept < lengths, kept, -1)
-
-
-def _padded(table: Sequence[int]) -> bytes:
-    return bytes(table) + bytes(_BYTE - len(table))
+    return np.where(kept < ends, kept, -1)

@@ -178,7 +178,7 @@ def with_all_of(suspects: Flags, doubtful: Instances, rule: StackedRule, stack: 
         every = Instances(traces, (), firsts, lasts)
     else:
         chosen = [(stack.of_type(kind) & own).nonzero()[0] for kind in rule.types]
-        objects = tuple(chosen) if len(chosen) == 1 else _pairs_present(chosen[0], chosen[1], stack)
+        objects = tuple(chosen) if len(chosen) == 1 else stack.pairs_present(chosen[0], chosen[1])
         every = _of_objects(objects, stack)
     others = doubtful.part((~suspects[doubtful.traces]).nonzero()[0])
     if not len(others.traces):
@@ -190,17 +190,6 @@ def with_all_of(suspects: Flags, doubtful: Instances, rule: StackedRule, stack: 
         np.concatenate([others.firsts, every.firsts]),
         np.concatenate([others.lasts, every.lasts]),
     )
-
-
-def _pairs_present(first: Indices, second: Indices, stack: Stack) -> tuple[Indices, Indices]:
-    """The pairs of different objects of one trace that are present together."""
-    begins = stack.trace_of[second].searchsorted(stack.trace_of[first], side="left")
-    ends = stack.trace_of[second].searchsorted(stack.trace_of[first], side="right")
-    places, _ = ranges(begins, ends - begins)
-    left, right = first.repeat(ends - begins), second[places]
-    since = np.maximum(stack.firsts[left], stack.firsts[right])
-    met = (left != right) & (since <= np.minimum(stack.lasts[left], stack.lasts[right]))
-    return left[met], right[met]
 
 
 def _of_objects(objects: tuple[Indices, ...], stack: Stack) -> Instances:

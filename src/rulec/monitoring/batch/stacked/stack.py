@@ -1,8 +1,4 @@
-"""Traces in arrays laid end to end, with any objects.
-
-The states of all traces follow each other, trace by trace; values about objects are in *cells*, one
-for each state in which an object is present, object by object.
-"""
+"""The columns of traces in arrays laid end to end: what is told, and what follows from it."""
 
 from __future__ import annotations
 
@@ -22,12 +18,12 @@ from rulec.monitoring.batch.columns.encoded_columns import (
 )
 from rulec.monitoring.batch.columns.meant_columns import MeaningReader
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
-from rulec.monitoring.batch.stacked.stacked_pairs import StackedPairs
+from rulec.monitoring.batch.joined.object_pairs import ObjectPairs
+from rulec.monitoring.batch.joined.trace_places import TracePlaces
 from rulec.monitoring.implied_values import words_meant
 from rulec.trace.partly_known.column_values import partly_known
 from rulec.trace.partly_known.partly_known_values import NameValues
 from rulec.trace.plain_arrays import distinct
-from rulec.trace.trace_arrays import starts_of
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -53,34 +49,19 @@ class StackColumn(NamedTuple):
         return None if self.upper is None else self.upper != self.values
 
 
-class Stack:
+class Stack(TracePlaces):
     """Traces with the same names, end to end; ``vocabulary`` has the defaults of other names.
 
     ``defaults`` caches these, encoded as in columns, for all traces judged with the vocabulary.
-
-    ``begins`` is where the states of each trace begin, ``starts`` where the cells of each object
-    do; both have the total length as last entry. ``arity`` is the number of objects that
-    each name in the traces is about. ``trace_of``, ``firsts`` and ``lasts`` are each object's
-    trace and its first and last state among all; ``kind_of`` is the number of its type among the
-    ``kinds``.
+    ``arity`` is the number of objects that each name in the traces is about.
     """
 
     def __init__(
         self, traces: JoinedTraces, vocabulary: Vocabulary, defaults: dict[str, Any]
     ) -> None:
+        super().__init__(traces.lengths, traces.n_objects, traces.spans, traces.types, vocabulary)
         self._defaults = defaults
         self._pieces = traces.pieces
-        self.vocabulary = vocabulary
-        self.begins = np.concatenate([np.zeros(1, dtype=np.intp), traces.lengths.cumsum()])
-        self.n_states = int(self.begins[-1])
-        self.trace_of = np.arange(len(traces.lengths)).repeat(traces.n_objects)
-        self.firsts = traces.spans[:, 0] + self.begins[self.trace_of]
-        self.lasts = traces.spans[:, 1] + self.begins[self.trace_of]
-        self.starts = starts_of(traces.spans)
-        self.types = traces.types
-        self.kinds = tuple(dict.fromkeys(self.types))
-        numbers = {kind: number for number, kind in enumerate(self.kinds)}
-        self.kind_of: Indices = np.array([numbers[kind] for kind in self.types], dtype=np.intp)
         piece = traces.pieces[0]
         parts = piece.world, piece.about, piece.between
         self.arity = {name: n for n, part in enumerate(parts) for name in part}
@@ -90,63 +71,6 @@ class Stack:
             self.arity.setdefault(name, len(vocabulary.declarations[name].parameters))
         self._columns: dict[str, StackColumn] = {}
         self._ends: dict[str, tuple[float, float]] = {}
-        self._of_type: dict[str, Flags] = {}
-        self._types_met: dict[str, bool] = {}
-        self._whole_types: dict[str, bool] = {}
-        self._cells_of_type: dict[str, Indices] = {}
-        self._states_of_type: dict[str, Indices] = {}
-
-    @cached_property
-    def _n_cells(self) -> Indices:
-        return self.starts[1:] - self.starts[:-1]
-
-    @cached_property
-    def object_of(self) -> Indices:
-        """The object of each cell."""
-        return np.arange(len(self.types)).repeat(self._n_cells)
-
-    @cached_property
-    def state_of(self) -> Indices:
-        """The state of each cell."""
-        shift: Indices = self.firsts - self.starts[:-1]
-        return np.arange(self.starts[-1]) + shift.repeat(self._n_cells)
-
-    @cached_property
-    def are_first(self) -> Flags:
-        """The first cell of each object."""
-        are_first: Flags = np.zeros(self.starts[-1], dtype=bool)
-        are_first[self.starts[:-1][self.firsts <= self.lasts]] = True
-        return are_first
-
-    def of_type(self, kind: str) -> Flags:
-        """Which objects are of a type or one of its subtypes."""
-        if kind not in self._of_type:
-            suits = [self.vocabulary.is_subtype(own, kind) for own in self.kinds]
-            self._of_type[kind] = np.array(suits, dtype=bool)[self.kind_of]
-        return self._of_type[kind]
-
-    def has_type(self, kind: str) -> bool:
-        """Whether some object is of a type or one of its subtypes."""
-        if kind not in self._types_met:
-            is_subtype = self.vocabulary.is_subtype
-            self._types_met[kind] = any(is_subtype(own, kind) for own in self.kinds)
-        return self._types_met[kind]
-
-    def cells_of_type(self, kind: str) -> Indices:
-        """The cells of the objects of a type."""
-        if kind not in self._cells_of_type:
-            suits = self.of_type(kind)
-            every = np.arange(self.starts[-1])
-            self._cells_of_type[kind] = every if suits.all() else every[suits[self.object_of]]
-        return self._cells_of_type[kind]
-
-    def states_of_type(self, kind: str) -> Indices:
-        """The states of the cells of the objects of a type."""
-        if kind not in self._states_of_type:
-            cells = self.cells_of_type(kind)
-            is_every = len(cells) == self.starts[-1]
-            self._states_of_type[kind] = self.state_of if is_every else self.state_of[cells]
-        return self._states_of_type[kind]
 
     def untold(self, names: Iterable[str]) -> set[str]:
         """The names among these whose values cannot be read from arrays.
@@ -199,11 +123,9 @@ class Stack:
         return states
 
     @cached_property
-    def pairs(self) -> StackedPairs:
+    def pairs(self) -> ObjectPairs:
         """The pairs of objects that something is said about."""
-        objects = self._pieces[0].pairs
-        spans = [self.firsts[objects].max(axis=1), self.lasts[objects].min(axis=1)]
-        return StackedPairs(objects, len(self.types), np.stack(spans, axis=1))
+        return self.pairs_of(self._pieces[0].pairs)
 
     def column(self, name: str) -> StackColumn | None:
         """The column of a name; None if no state contains it. Raises UnencodableError."""
@@ -284,7 +206,7 @@ class Stack:
             and values.dtype == bool
             and isinstance(own := declarations.get(name), Signal)
             and len(own.parameters) == arity
-            and all(map(self._all_are, own.parameters))
+            and all(map(self.all_are, own.parameters))
         }
 
     def ends(self, name: str) -> tuple[float, float] | None:
@@ -397,13 +319,28 @@ class Stack:
         default, unknown = self.default(name), column.unknown
         declaration = self.vocabulary.declarations[name]
         if default is None:
-            return StackColumn(column.values, column.upper, unknown, unsaid)
+            missing = unsaid & self._suits(declaration)
+            return StackColumn(
+                column.values, column.upper, unknown, missing if missing.any() else None
+            )
         if default is UNKNOWN:  # it is not told, and yet said of somebody
             return StackColumn(column.values, column.upper, either(unknown, unsaid), None)
         values = np.where(unsaid, default, column.values).astype(column_dtype(declaration))
         upper = None if column.upper is None else np.where(unsaid, default, column.upper)
         unknown = None if unknown is None else unknown & ~unsaid
         return StackColumn(values, upper, unknown, None)
+
+    def _suits(self, declaration: Declaration) -> Flags:
+        """Which values of a name's column are about different objects of its types."""
+        kinds = declaration.parameters
+        if not kinds:
+            return np.ones(self.n_states, dtype=bool)
+        if len(kinds) == 1:
+            return self.of_type(kinds[0]).repeat(self.n_cells)
+        first, second = self.pairs.objects.T
+        suits: Flags = (first != second) & self.of_type(kinds[0])[first]
+        suits &= self.of_type(kinds[1])[second]
+        return suits.repeat(np.diff(self.pairs.starts))
 
     def _places(self, name: str, declaration: Enumeration, parts: Sequence[Array]) -> Array:
         """The places among the declared values; one past the last for any other text."""
@@ -440,22 +377,16 @@ class Stack:
     def _not_about(self, name: str, declaration: Declaration) -> Flags | None:
         """The cells of the objects for which a name is not given."""
         (kind,) = declaration.parameters
-        if len(self._pieces) == 1 and name not in self._partly and self._all_are(kind):
+        if len(self._pieces) == 1 and name not in self._partly and self.all_are(kind):
             return None
         every = [
             piece.only[name] if name in piece.only else np.ones(piece.n_objects, dtype=bool)
             for piece in self._pieces
         ]
         is_about = _end_to_end(every)
-        if not self._all_are(kind) and (is_about & ~self.of_type(kind)).any():
+        if not self.all_are(kind) and (is_about & ~self.of_type(kind)).any():
             raise UnencodableError
-        return None if is_about.all() else (~is_about).repeat(self._n_cells)
-
-    def _all_are(self, kind: str) -> bool:
-        """Whether all objects are of a type."""
-        if kind not in self._whole_types:
-            self._whole_types[kind] = bool(self.of_type(kind).all())
-        return self._whole_types[kind]
+        return None if is_about.all() else (~is_about).repeat(self.n_cells)
 
 
 def _joined(

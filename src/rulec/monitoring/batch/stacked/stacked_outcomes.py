@@ -83,77 +83,66 @@ def outcomes(
         return
     for chosen in _by_unknown_constants(rule, reader, instances, rulebook):
         alternatives = _letters_apart(rule, reader, chosen)
+        known = [_answers(rule, letters, chosen.bounds) for *_, letters in alternatives]
         doubtful = suspects[chosen.instances.traces]
-        for _, _, letters in alternatives:
-            doubtful |= ~_are_kept_by_machine(rule, letters, chosen.bounds)
+        for own in known:
+            doubtful |= [answer is None or answer.worst != KEPT for answer in own]
         if not doubtful.any():
             continue
         if not doubtful.all():
-            chosen = chosen.part(rule, reader, doubtful.nonzero()[0])
+            members = doubtful.nonzero()[0]
+            chosen = chosen.part(rule, reader, members)
             alternatives = _letters_apart(rule, reader, chosen)
+            known = [[own[member] for member in members.tolist()] for own in known]
         words = _letters_together(rule, reader, chosen, alternatives)
-        yield _few(words) if len(words.bounds) <= FEW_WORDS else _many(words)
+        answers = [
+            own if letters is before else _answers(rule, letters, words.bounds)
+            for own, letters, (*_, before) in zip(known, words.letters, alternatives, strict=True)
+        ]
+        yield _outcomes_of(words, answers)
 
 
-def _few(words: StackedWords) -> StackedOutcomes:
-    """The outcomes of a few words, each evaluated by itself."""
-    ends = words.bounds.tolist()
-    places: list[int] = []
-    answers: list[Answer | None] = []
-    any_odd = bool(words.odd.any())
-    for place, (begin, end) in enumerate(pairwise(ends)):
-        answer: Answer | None = None
-        if not any_odd or not words.odd[begin:end].any():
-            of_words = [words.rule.answer_to(own[begin:end]) for own in words.letters]
-            # Letters that axioms exclude make a word odd
-            answer = _combined([own for own in of_words if own is not None])
-            if answer.worst == KEPT:
-                continue
-        places.append(place)
-        answers.append(answer)
-    return StackedOutcomes(words, places, answers)
+def _outcomes_of(
+    words: StackedWords, answers: Sequence[Sequence[Answer | None]]
+) -> StackedOutcomes:
+    """The outcomes of words, from the answers for all alternatives."""
+    are_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1]).tolist()
+    combined = answers[0] if len(answers) == 1 else list(map(_combined, zip(*answers, strict=True)))
+    # Letters that axioms exclude make a word odd
+    found = [None if is_odd else own for is_odd, own in zip(are_odd, combined, strict=True)]
+    places = [n for n, own in enumerate(found) if own is None or own.worst != KEPT]
+    return StackedOutcomes(words, places, [found[place] for place in places])
 
 
-def _many(words: StackedWords) -> StackedOutcomes:
-    """The outcomes of many words, each distinct one evaluated once."""
-    is_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1])
-    alternatives = [stretches(letters, words.bounds) for letters in words.letters]
-    first_alike = _first_alike(words.letters, words.bounds)
-    # An odd choice has a word of its own
-    by_itself = is_odd | is_odd[first_alike]
-    first_alike = np.where(by_itself, np.arange(len(is_odd)), first_alike)
-    answers: dict[int, Answer | None] = dict.fromkeys(is_odd.nonzero()[0].tolist())
-    is_told = is_odd.copy()
-    different = distinct(first_alike[~is_odd]).tolist()
-    of_each = [words.rule.answers(rows, ends, different) for rows, ends in alternatives]
-    for place, *of_word in zip(different, *of_each, strict=True):
-        answer = answers[place] = _combined(of_word)
-        is_told[place] = answer.worst != KEPT
-    places = is_told[first_alike].nonzero()[0]
-    answers_at = [answers[first] for first in first_alike[places].tolist()]
-    return StackedOutcomes(words, places.tolist(), answers_at)
+def _answers(
+    rule: StackedRule, letters: NDArray[np.intp], bounds: NDArray[np.intp]
+) -> list[Answer | None]:
+    """The answer for each word, of which many are equal; None if axioms exclude a letter of it."""
+    if len(bounds) <= FEW_WORDS:
+        return [rule.answer_to(letters[begin:end]) for begin, end in pairwise(bounds.tolist())]
+    first_alike = _first_alike(letters, bounds)
+    different = distinct(first_alike).tolist()
+    answers = dict(
+        zip(different, rule.answers(*stretches(letters, bounds), different), strict=True)
+    )
+    return [answers[first] for first in first_alike.tolist()]
 
 
-def _first_alike(
-    alternatives: Sequence[NDArray[np.intp]], bounds: NDArray[np.intp]
-) -> NDArray[np.intp]:
+def _first_alike(letters: NDArray[np.intp], bounds: NDArray[np.intp]) -> NDArray[np.intp]:
     """For each word the position of the first equal word.
 
-    A word consists of the letters of all alternatives between two ``bounds``. Words are
-    distinguished by weighted sums of their letters, then compared.
+    Words are distinguished by weighted sums of their letters, then compared.
     """
     begins, lengths = bounds[:-1], bounds[1:] - bounds[:-1]
     states = np.arange(bounds[-1]) - begins.repeat(lengths)
     weights = _weights(int(lengths.max(initial=0)) + 1)
-    sums = weights[lengths]
-    for letters in alternatives:
-        own = np.add.reduceat((letters + 1).astype(np.uint64) * weights[states], begins)
-        sums = sums * ODD + own
+    own = np.add.reduceat((letters + 1).astype(np.uint64) * weights[states], begins)
+    sums = weights[lengths] * ODD + own
     _, firsts, groups = np.unique(sums, return_index=True, return_inverse=True)
     like: NDArray[np.intp] = firsts[groups]
     if (lengths == lengths[like]).all():
         at = begins[like].repeat(lengths) + states
-        if all((letters == letters[at]).all() for letters in alternatives):
+        if (letters == letters[at]).all():
             return like
     return np.arange(len(begins))
 
@@ -164,10 +153,11 @@ def _weights(count: int) -> NDArray[np.uint64]:
     return weights
 
 
-def _combined(answers: Sequence[Answer]) -> Answer:
-    """The combined answer of several words."""
-    if len(answers) == 1:
-        return answers[0]
+def _combined(of_alternatives: Sequence[Answer | None]) -> Answer | None:
+    """The combined answer of several words; None if there is none."""
+    answers = [answer for answer in of_alternatives if answer is not None]
+    if not answers:
+        return None
     steps = [answer.step for answer in answers if answer.step is not None]
     return Answer(
         min(answer.best for answer in answers),
@@ -265,27 +255,6 @@ def _letters_apart(rule: StackedRule, reader: StackReader, chosen: _Chosen) -> S
             letters = np.full(len(chosen.spots.states), letters, dtype=np.intp)
         alternatives.append((values, own, letters))
     return alternatives
-
-
-def _are_kept_by_machine(
-    rule: StackedRule, letters: NDArray[np.intp], bounds: NDArray[np.intp]
-) -> NDArray[np.bool_]:
-    """For each word whether it is kept whichever of its possible letters are the actual ones."""
-    n_words = len(bounds) - 1
-    if n_words < FEW_WORDS:
-        words = [rule.answer_to(letters[i:j]) for i, j in pairwise(bounds.tolist())]
-        # Letters that axioms exclude are never kept
-        return np.array([word is not None and word.worst == KEPT for word in words])
-    kept = np.zeros(n_words, dtype=bool)
-    first_alike = _first_alike([letters], bounds)
-    rows, ends = stretches(letters, bounds)
-    sets = rule.letters.sets
-    are_all = 0 not in sets
-    for place in distinct(first_alike).tolist():
-        own = rows[ends[place] : ends[place + 1]]
-        if are_all or all(sets[number] for number in own[:, 0].tolist()):
-            kept[place] = rule.answer(own).worst == KEPT
-    return kept[first_alike]
 
 
 def _letters_together(

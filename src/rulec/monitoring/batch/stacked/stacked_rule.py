@@ -257,8 +257,7 @@ class StackedRule:
         if key in self._words:
             return self._words[key]
         rows, _ = stretches(letters, np.array([0, len(letters)], dtype=np.intp))
-        sets = self.letters.sets
-        answer = self.answer(rows) if all(sets[n] for n in rows[:, 0].tolist()) else None
+        answer = self._answer(rows)
         if len(key) <= MOST_BYTES >> 10:
             self._make_room(len(key))
             self._words[key] = answer
@@ -277,15 +276,22 @@ class StackedRule:
 
     def answers(
         self, rows: NDArray[np.intp], ends: Sequence[int], places: Sequence[int]
-    ) -> list[Answer]:
-        """The answers for some of the words that lie in ``rows``, each between two ``ends``."""
+    ) -> list[Answer | None]:
+        """The answers for some of the words that lie in ``rows``, each between two ``ends``.
+
+        None for words of which axioms exclude a letter.
+        """
         # One text of all words, since cutting arrays into thousands of words takes longer
         text, width = rows.tobytes(), rows.itemsize * rows.shape[1]
         keys = [text[width * ends[place] : width * ends[place + 1]] for place in places]
         return [
-            self._answers.get(key) or self.answer(rows[ends[place] : ends[place + 1]])
+            self._answers.get(key) or self._answer(rows[ends[place] : ends[place + 1]])
             for key, place in zip(keys, places, strict=True)
         ]
+
+    def _answer(self, rows: NDArray[np.intp]) -> Answer | None:
+        sets = self.letters.sets
+        return self.answer(rows) if all(sets[n] for n in rows[:, 0].tolist()) else None
 
     def _make_room(self, n_bytes: int) -> None:
         self._bytes += n_bytes

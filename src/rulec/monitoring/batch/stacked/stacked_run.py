@@ -76,7 +76,8 @@ class StackedRun:
         judged = self._ready.judged
         self._stack = Stack(traces, judged.vocabulary, self._ready.defaults)
         self._reader = StackReader(self._stack)
-        self._closely = [_CloseLook(partial(traces.trace, n), rules) for n in range(n_traces)]
+        self._trace = traces.trace
+        self._closely: dict[int, _CloseLook] = {}
         whole: set[int] = set()
         if traces.kind.is_whole:
             whole = {*range(n_traces)} - self._stack.partial_traces()
@@ -144,13 +145,19 @@ class StackedRun:
             about = [int(own[place]) for own in instances.objects]
             self._add_odd(int(instances.traces[place]), rule, (rule_number, *about))
 
+    def _close(self, number: int) -> _CloseLook:
+        if number not in self._closely:
+            look = _CloseLook(partial(self._trace, number), self._rulebook)
+            self._closely[number] = look
+        return self._closely[number]
+
     def _add_odd(self, number: int, rule: CompiledRule, place: Place) -> None:
         """Add the outcome for a choice of objects that arrays cannot decide."""
         if number in self._odd:
             return
         binding = self._findings.binding(rule, place[1:])
         try:
-            finding = self._closely[number].answer(rule.name, binding)
+            finding = self._close(number).answer(rule.name, binding)
         except RulecError:
             self._odd.add(number)
             return
@@ -158,9 +165,9 @@ class StackedRun:
             self._findings.add_single(number, place, finding)
 
     def _add_closely(self, rule_number: int, rule: StackedRule) -> None:
-        for number, close in enumerate(self._closely):
+        for number in range(self._n_traces):
             try:
-                answers = close.answers(rule.rule.name)
+                answers = self._close(number).answers(rule.rule.name)
             except RulecError:
                 self._odd.add(number)
                 continue

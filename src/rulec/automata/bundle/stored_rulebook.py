@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
-from rulec.automata.bundle.cut_machines import CutTables, StoredPrefixes, TimedCut
+from rulec.automata.bundle.cut_machines import StoredPrefixes, TimedCut
 from rulec.automata.clocks.clocked_machine import ClockedMachine, ClockLetters, TimedMachine
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Threshold
+from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.cache.stored_objects import ObjectCodec, ObjectKind, kind_of_fields, kinds_of_fields
 from rulec.diagnostics import Diagnostic
 from rulec.logic import formula as ltl
@@ -42,7 +43,7 @@ COMPILATIONS = ObjectCodec(
         **kinds_of_fields(
             (
                 *(CompiledRule, CompiledAxiom, TimedMachine),
-                *(CutTables, TimedCut, StoredPrefixes, Compilation),
+                *(OutcomeMachine, TimedCut, StoredPrefixes, Compilation),
             )
         ),
     }

@@ -1,30 +1,24 @@
-"""A file of a text and rows of integers, mapped into memory instead of decoded.
+"""A file of a text and rows of integers, which are decoded when asked for.
 
-The file begins with a header: its kind, the SHA-256 of the rest, the length of the text. The text
-follows, then the rows, each with integers of the smallest width that fits, in the byte order of the
-machine that wrote it. A file in another byte order has another header.
+The file begins with a header: its kind, and the length of the text. The text follows, then the
+rows, each with integers of the smallest width that fits, in the byte order of the machine that
+wrote it. A file in another byte order has another header.
 """
 
 from __future__ import annotations
 
-import os
 import sys
 from array import array
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from hashlib import sha256
 from itertools import chain
-from mmap import ACCESS_READ, mmap
-from pathlib import Path
 from struct import Struct, error
 from typing import Literal, TypeAlias, TypeVar, get_args
 
-from rulec.files.written_files import is_own
-
 _Entry = TypeVar("_Entry", int, bool)
 
-_HEAD = Struct("<16s32sQ")
-_KIND = f"rulec tables 1 {sys.byteorder[0]}".encode()
+_HEAD = Struct("<16sQ")
+_KIND = f"rulec tables 2 {sys.byteorder[0]}".encode()
 _ALIGNED = 8
 Width: TypeAlias = Literal["B", "b", "h", "i", "q"]
 """Type codes of ``array``: unsigned bytes, and signed integers of 1, 2, 4 and 8 bytes."""
@@ -60,13 +54,7 @@ class TableWriter:
     def file(self, text: bytes) -> bytes:
         """The whole file."""
         rest = text + bytes(-len(text) % _ALIGNED) + self._bytes
-        return _HEAD.pack(_KIND, _digest(len(text), rest), len(text)) + rest
-
-
-def _digest(length: int, rest: bytes | memoryview[int]) -> bytes:
-    seen = sha256(b"%d " % length)
-    seen.update(rest)
-    return seen.digest()
+        return _HEAD.pack(_KIND, len(text)) + rest
 
 
 def _holds(code: Width, number: int) -> bool:
@@ -76,20 +64,20 @@ def _holds(code: Width, number: int) -> bool:
     return -(1 << bits) <= number < 1 << bits
 
 
-class MappedTables:
+class RowTables:
     """A file's text, and its rows by their places.
 
-    ``data`` is the whole file. Raises ValueError if it is not such a file, or damaged.
+    ``data`` is the whole file. Raises ValueError if it is not such a file.
     """
 
-    def __init__(self, data: bytes | mmap) -> None:
+    def __init__(self, data: bytes) -> None:
         view = memoryview(data)
         try:
-            kind, digest, length = _HEAD.unpack_from(view)
+            kind, length = _HEAD.unpack_from(view)
         except error:
             raise ValueError("it is too short") from None
         rest = view[_HEAD.size :]
-        if kind.rstrip(b"\0") != _KIND or _digest(length, rest) != digest:
+        if kind.rstrip(b"\0") != _KIND:
             raise ValueError("it is not what was written")
         self.text = bytes(rest[:length])
         self._rows = rest[length + -length % _ALIGNED :]
@@ -124,11 +112,3 @@ def _of_width(row: Sequence[_Entry], width: int) -> tuple[tuple[_Entry, ...], ..
     if width <= 0 or len(row) % width:
         raise ValueError("rows do not fit their width")
     return tuple([tuple(row[start : start + width]) for start in range(0, len(row), width)])
-
-
-def mapped(path: Path) -> MappedTables:
-    """Map a file of this user. Raises OSError, or ValueError if it is damaged or not the user's."""
-    with path.open("rb") as stream:
-        if not is_own(os.fstat(stream.fileno())):
-            raise ValueError("somebody else may have written it")
-        return MappedTables(mmap(stream.fileno(), 0, access=ACCESS_READ))

@@ -1,4 +1,4 @@
-"""Pairs of objects in a stack, and where the values about each pair are."""
+"""Pairs of objects of traces end to end, and where the values about each pair are."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rulec.trace.trace_arrays import starts_of
 
 
 @dataclass(frozen=True, eq=False)
-class StackedPairs:
+class ObjectPairs:
     """Pairs of ``objects`` (pairs x 2) that something is said about, of ``n_objects``.
 
     ``spans`` (pairs x 2) are the first and last state, among all, in which both are present. Values
