@@ -21,8 +21,6 @@ from rulec.report.text.terminal_text import visible, wants_color
 if TYPE_CHECKING:
     from rulec.report.text.progress_bar import ProgressBar
 
-REFRESH_S = 0.2
-
 PAGE_WIDTH = 80
 """The width of a text that is not shown on a terminal."""
 

@@ -98,16 +98,11 @@ def as_text(explanation: Explanation, options: TableOptions = DEFAULT_OPTIONS) -
         for places in table.columns
     ]
     lines = broken(visible(explanation.rule.says), width, INDENT, INDENT)
-    lines += [*_in_words(explanation, options), *_repair(explanation, options)]
+    words = decisive_state_in_words(explanation, options.phrases, options.times)
+    lines += [*broken(words, width, INDENT, 2 * INDENT), *_repair(explanation, options)]
     rows = list(zip(titles, *columns, strict=True))
     lines += table_lines(rows, indent=INDENT, ruled=(0, table.n_facts))
     return "\n".join([*lines, *_left_out(explanation, table, width)])
-
-
-def _in_words(explanation: Explanation, options: TableOptions) -> Iterator[str]:
-    line = decisive_state_in_words(explanation, options.phrases, options.times)
-    if line:
-        yield from broken(line, options.width, INDENT, 2 * INDENT)
 
 
 def decisive_state_in_words(

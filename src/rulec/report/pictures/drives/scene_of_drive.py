@@ -9,7 +9,7 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.diagnostics import first_of
 from rulec.extraction.presences import participant_called
 from rulec.extraction.recording_verdicts import RecordingVerdicts
@@ -50,25 +50,19 @@ def drive_scene(
     drive: Drive,
     verdict: Verdict,
     verdicts: RecordingVerdicts,
-    kept: frozenset[str] | None = None,
+    kept: frozenset[str] | None,
 ) -> DriveScene:
     """The scene of a drive, with its violations of the rules ``kept``; None for all rules.
 
     A recording that was mirrored for judging is drawn as recorded.
     """
-    chosen = [
-        violation for violation in verdict.violations if kept is None or violation.rule in kept
-    ]
-    verdict = replace(
-        verdict,
-        violations=tuple(chosen),
-        open=tuple(
-            open_verdict
-            for open_verdict in verdict.open
-            if kept is None or open_verdict.rule in kept
-        ),
-        not_judged=tuple(rule for rule in verdict.not_judged if kept is None or rule.rule in kept),
-    )
+    if kept is not None:
+        verdict = replace(
+            verdict,
+            violations=tuple(one for one in verdict.violations if one.rule in kept),
+            open=tuple(one for one in verdict.open if one.rule in kept),
+            not_judged=tuple(one for one in verdict.not_judged if one.rule in kept),
+        )
     recording = verdicts.recording
     if verdicts.mirrored:
         recording = mirrored_recording(recording)
@@ -99,7 +93,7 @@ def drive_scene(
         bodies=bodies,
         violations=tuple(
             _violation(violation, drive, verdicts.rules, ids, participants)
-            for violation in _in_time(chosen)[:MOST_VIOLATIONS]
+            for violation in _in_time(verdict.violations)[:MOST_VIOLATIONS]
         ),
     )
 
@@ -198,7 +192,7 @@ def _violation(
         state=state,
         time_s=drive.time_s(state),
         title=in_a_line(violation, rule, rules.name),
-        short=", ".join(filter(None, (rule.strength, rule.cite, _objects_of(violation)))),
+        short=_short(violation, rule),
         says=rule.says,
         against=against,
         measured=tuple(
@@ -217,10 +211,11 @@ def _violation(
     )
 
 
-def _objects_of(violation: Violation) -> str:
+def _short(violation: Violation, rule: CompiledRule) -> str:
+    """The rule's strength and its article, the objects, and whether only the end decides."""
     objects = " and ".join(violation.binding.values())
     end = "decided by the end" if violation.step is None else ""
-    return ", ".join(filter(None, (f"for {objects}" if objects else "", end)))
+    return ", ".join(filter(None, (rule.strength, rule.cite, objects and f"for {objects}", end)))
 
 
 def _deciding_values(explanation: Explanation) -> Iterator[str]:
