@@ -135,13 +135,9 @@ def _alike(comparison: Comparison) -> Iterator[tuple[Relation, Fraction]]:
 
 def runs(numbers: Sequence[int]) -> list[range]:
     """Ascending numbers as ranges of consecutive ones."""
-    ranges: list[range] = []
-    for number in numbers:
-        if ranges and ranges[-1].stop == number:
-            ranges[-1] = range(ranges[-1].start, number + 1)
-        else:
-            ranges.append(range(number, number + 1))
-    return ranges
+    starts = [n for n, number in enumerate(numbers) if not n or number > numbers[n - 1] + 1]
+    ends = [*starts[1:], len(numbers)]
+    return [range(numbers[a], numbers[b - 1] + 1) for a, b in zip(starts, ends, strict=False)]
 
 
 def _denied(text: str) -> str:

@@ -360,15 +360,12 @@ def head(states: Sequence[int], places: range) -> str:
 
 
 def _merged(columns: Sequence[Sequence[str]], states: Sequence[int], decisive: int) -> list[range]:
-    ranges: list[range] = []
-    for place, column in enumerate(columns):
-        if (
-            place
-            and decisive not in (place, place - 1)
-            and states[place] == states[place - 1] + 1
-            and column == columns[place - 1]
-        ):
-            ranges[-1] = range(ranges[-1].start, place + 1)
-        else:
-            ranges.append(range(place, place + 1))
-    return ranges
+    starts = [
+        place
+        for place in range(len(columns))
+        if not place
+        or decisive in (place, place - 1)
+        or states[place] != states[place - 1] + 1
+        or columns[place] != columns[place - 1]
+    ]
+    return list(itertools.starmap(range, itertools.pairwise([*starts, len(columns)])))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 from numpy import float64
@@ -79,6 +80,7 @@ def drive_scene(
     participants = {name: participant_called(name, known) for name in drive.arrays.objects}
     ids = {body.id: body for body in bodies}
     steps = range(first, first + drive.arrays.n_states)
+    in_time = sorted(verdict.violations, key=lambda one: inf if one.step is None else one.step)
     return DriveScene(
         title=f"{recording.name}, {trace_title(verdict, verdicts.rules)}",
         notes=tuple(_notes(verdicts, verdict)),
@@ -93,7 +95,7 @@ def drive_scene(
         bodies=bodies,
         violations=tuple(
             _violation(violation, drive, verdicts.rules, ids, participants)
-            for violation in _in_time(verdict.violations)[:MOST_VIOLATIONS]
+            for violation in in_time[:MOST_VIOLATIONS]
         ),
     )
 
@@ -112,12 +114,6 @@ def _notes(verdicts: RecordingVerdicts, verdict: Verdict) -> Iterator[str]:
         yield "what the recording does not tell has its default"
     if verdicts.mirrored:
         yield "drawn as recorded; judged as its mirror image, so that left is right in the rules"
-
-
-def _in_time(violations: Sequence[Violation]) -> list[Violation]:
-    return sorted(
-        violations, key=lambda violation: float("inf") if violation.step is None else violation.step
-    )
 
 
 def _bodies(tracks: Tracks, ego: int, origin: Points) -> tuple[Body, ...]:
