@@ -27,6 +27,9 @@ from rulec.value_display import Rows, short_repr
 
 S_PER_HOUR = 3600.0
 
+SHORTEST = 1e-9
+"""A drive's duration (h) or distance (km) below this counts as 0: a rate might be infinite."""
+
 
 @dataclass(frozen=True, slots=True)
 class Rate:
@@ -184,9 +187,9 @@ def _rule_sums(
 
 
 def _numbers(drive: DriveCounts, rules: Sequence[str]) -> list[float]:
-    hours = drive.duration_s / S_PER_HOUR
     is_far = drive.distance_m is not None
-    km = (drive.distance_m or 0.0) / 1000
+    lengths = drive.duration_s / S_PER_HOUR, (drive.distance_m or 0.0) / 1000
+    hours, km = (length if length >= SHORTEST else 0.0 for length in lengths)
     numbers: list[float] = []
     for rule in rules:
         if rule in drive.not_judged:
@@ -231,7 +234,7 @@ class _RuleSums:
         return round(self[name])
 
     def per_length(self, violated: tuple[str, str], length: str, scale: float) -> Rate | None:
-        """The rate per ``scale`` units of a duration or distance; None if that is 0."""
+        """The rate per ``scale`` units of a duration (h) or distance (km); None if that is 0."""
         if not self[length]:
             return None
         least, most = (self.count(name) for name in violated)
