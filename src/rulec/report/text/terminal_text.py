@@ -39,22 +39,24 @@ _KEPT_TOGETHER = re.compile(
     r"|\d (?=(?:km/h|m/s²?|ms|s|min|h|m|km|t|kg|%)(?![\w/]))"
 )
 
-_REORDERING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u061c")
+HIDDEN = (
+    "\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\u2028\u2029\ufeff"
+    "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
+)
+"""Control characters but for tabs and line feeds, surrogates, line ends, and reordering marks."""
+
+_NOT_VISIBLE = re.compile(f"[\t\n{HIDDEN}]")
 
 
 def visible(text: str) -> str:
     """Escape control characters, line ends and reordering marks in a text."""
-    return text if text.isprintable() else "".join(map(_shown, text))
+    return text if text.isprintable() else _NOT_VISIBLE.sub(as_escape, text)
 
 
-def _shown(character: str) -> str:
-    if character.isprintable():
-        return character
-    code = ord(character)
-    category = unicodedata.category(character)
-    if category in ("Cc", "Cs", "Zl", "Zp") or character in _REORDERING or character == "\ufeff":
-        return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"
-    return character
+def as_escape(match: re.Match[str]) -> str:
+    """The character that was matched, as Python escapes it."""
+    code = ord(match[0])
+    return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"
 
 
 @contextmanager
