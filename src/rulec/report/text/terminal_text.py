@@ -216,6 +216,11 @@ def cut(text: str, width: int) -> str:
     return f"{head if head.strip() and len(word) <= _LONGEST_CUT else line} …"
 
 
+def clipped(text: str, widest: int) -> str:
+    """A text, cut to a number of characters."""
+    return text if len(text) <= widest else f"{text[: widest - 1]}…"
+
+
 def column_lines(rows: Sequence[Sequence[str]], width: int, *, indent: str = "") -> list[str]:
     """Plain rows with columns, a line each, cut to a width.
 

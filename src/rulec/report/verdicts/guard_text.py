@@ -11,18 +11,10 @@ from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics.phrases import any_of
 from rulec.logic.formula import Atom, Comparison, Count, QuantityTerm, Relation, atoms_of
+from rulec.logic.linear_comparison import DENIED
 from rulec.logic.sentences.wording import comparison_text, number_text, terms_text
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
-
-_DENIAL: dict[Relation, Relation] = {
-    "<": ">=",
-    ">=": "<",
-    "<=": ">",
-    ">": "<=",
-    "=": "!=",
-    "!=": "=",
-}
 
 _OF_WHOLE_NUMBERS: dict[Relation, tuple[Relation, int]] = {
     "<": ("<=", -1),
@@ -47,7 +39,7 @@ class GuardWording:
                 text = comparison_text(atom)
                 for relation, limit in _alike(atom):
                     self._said[atom.terms, relation, limit] = text
-                    self._said.setdefault((atom.terms, _DENIAL[relation], limit), _denied(text))
+                    self._said.setdefault((atom.terms, DENIED[relation], limit), _denied(text))
 
     def condition(self, cubes: Sequence[Cube]) -> str:
         """A condition that holds exactly for the letters of these cubes; ``true`` for all."""
@@ -144,5 +136,4 @@ def _denied(text: str) -> str:
     signs = _SIGN.findall(text)
     if len(signs) != 1:
         return f"not ({text})"
-    denial: Relation = _DENIAL[signs[0]]
-    return text.replace(signs[0], denial)
+    return text.replace(signs[0], DENIED[signs[0]])

@@ -22,7 +22,7 @@ from rulec.monitoring.explain.explained_parts import Observation, Part
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.explain.margins import Margin, number_with_error
 from rulec.report.text.console import PAGE_WIDTH
-from rulec.report.text.terminal_text import broken, styled, table_lines, visible
+from rulec.report.text.terminal_text import broken, clipped, styled, table_lines, visible
 from rulec.report.verdicts.guard_text import GuardWording, runs
 from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
 from rulec.rulebook.vocabulary_phrases import phrases_of
@@ -294,11 +294,6 @@ def _folded(parts: Sequence[Part], at: int, depth: int, widest: int) -> Iterator
         return
     for operand in _operands(parts, at):
         yield from _folded(parts, operand, depth + 1, widest)
-
-
-def clipped(text: str, widest: int) -> str:
-    """A text, cut to a number of characters."""
-    return text if len(text) <= widest else f"{text[: widest - 1]}…"
 
 
 def _operands(parts: Sequence[Part], at: int) -> Iterator[int]:
