@@ -13,6 +13,8 @@ from typing import TextIO
 
 from click import unstyle
 
+from rulec.resources import variable_set
+
 MOST_DIGITS = 30
 
 _PLAIN, _COLORED = "NO_COLOR", "FORCE_COLOR"
@@ -65,20 +67,12 @@ def colored(choice: str) -> Iterator[None]:
 
     It is set in the environment, so that it also applies to other processes.
     """
-    before = dict(os.environ)
-    try:
-        for name in (_PLAIN, _COLORED):
-            os.environ.pop(name, None)
-        if choice == "auto":
-            os.environ.update({name: before[name] for name in (_PLAIN,) if name in before})
-        else:
-            os.environ[_COLORED if choice == "always" else _PLAIN] = "1"
+    plain = os.environ.get(_PLAIN) if choice == "auto" else None
+    with (
+        variable_set(_PLAIN, "1" if choice == "never" else plain),
+        variable_set(_COLORED, "1" if choice == "always" else None),
+    ):
         yield
-    finally:
-        for name in (_PLAIN, _COLORED):
-            os.environ.pop(name, None)
-            if name in before:
-                os.environ[name] = before[name]
 
 
 def wants_color(stream: TextIO) -> bool:
