@@ -20,7 +20,6 @@ OBJECTS = {"v1": "vehicle"}
         (Trace("t", -1.0, {}, ({},), {}, PLACE), "R0501", "`step_s` is -1;"),
         (Trace("t", math.nan, {}, ({},), {}, PLACE), "R0501", "`step_s` is nan;"),
         (Trace("t", math.inf, {}, ({},), {}, PLACE), "R0501", "`step_s` is inf;"),
-        (Trace("t", 1e308, {}, ({},) * 9, {}, PLACE), "R0501", "less for so many states"),
         (Trace("t", 1.0, {}, ({}, None), {}, PLACE), "R0501", "state 1"),
         (Trace("t", 1.0, OBJECTS, ({},), {"v2": (0, 0)}, PLACE), "R0505", "`v2`"),
         (Trace("t", 1.0, OBJECTS, ({},), {"v1": (0, 1)}, PLACE), "R0505", "states 0 to 0"),

@@ -170,11 +170,9 @@ def check_frame(trace: Trace) -> None:
         raise NO_STATES.error(
             trace.place, "the trace has no states; it needs at least one to judge"
         )
-    is_number = is_finite(trace.step_s) and trace.step_s > 0
-    if not is_number or not is_finite(trace.step_s * len(trace.states)):
+    if not is_finite(trace.step_s) or not trace.step_s > 0:
         shown = f"{trace.step_s:g}" if isinstance(trace.step_s, float) else brief(trace.step_s)
-        wanted = "a number of seconds above 0" if not is_number else "less for so many states"
-        message = f"`step_s` is {shown}; it has to be {wanted}"
+        message = f"`step_s` is {shown}; it has to be a number of seconds above 0"
         raise NOT_A_TRACE.error(trace.place, message)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics.argument_kinds import is_finite
 from rulec.logic.free_names import names_in
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import NotJudged, Verdict
@@ -57,6 +58,7 @@ def not_judged_trace(file: str, answer: NotJudged, rulebook: str) -> VerdictFind
     )
 
 
-def _time_s(trace: Trace, state: int) -> float:
-    """The time of a state (s), from the first state on."""
-    return round(state * trace.step_s, 9)
+def _time_s(trace: Trace, state: int) -> float | None:
+    """The time of a state (s), from the first state on; None if it is beyond all floats."""
+    time_s = state * trace.step_s
+    return round(time_s, 9) if is_finite(time_s) else None

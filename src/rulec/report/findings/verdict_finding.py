@@ -160,7 +160,7 @@ class FindingSource:
         return self._finding(violation, "violated", vehicle, **measured(margins), **evidence)
 
     def left_open(
-        self, result: OpenVerdict, vehicle: str, from_s: float, to_s: float
+        self, result: OpenVerdict, vehicle: str, from_s: float | None, to_s: float | None
     ) -> VerdictFinding:
         """An open verdict on a drive that lasts ``from_s`` to ``to_s``."""
         return self._finding(
