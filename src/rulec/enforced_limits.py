@@ -21,7 +21,8 @@ else:
     _IN_BROWSER = False
 
 from rulec.diagnostics import RulecError
-from rulec.resource_limits import MEMORY, SECONDS, is_set, variable_set
+from rulec.resource_limits import MEMORY, SECONDS, is_set
+from rulec.resources import variable_set
 
 HELD_A_BYTE: Final = 50
 """How many bytes may be held, beside the limit, for each byte of input after decompression."""

@@ -16,6 +16,7 @@ from typing import Final
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
 from rulec.limit_messages import NO_LIMIT, OVER_LIMIT
+from rulec.resources import variable_set
 
 VARIABLE: Final = "RULEC_LIMITS"
 """The environment variable: settings such as ``choices=5000000``, separated by spaces."""
@@ -267,17 +268,3 @@ def in_force(texts: Iterable[str]) -> Iterator[None]:
     given = {**settings_in(os.environ.get(VARIABLE, "").split()), **settings_in(texts)}
     with variable_set(VARIABLE, " ".join(f"{name}={value}" for name, value in given.items())):
         yield
-
-
-@contextmanager
-def variable_set(name: str, value: str) -> Iterator[None]:
-    """Set an environment variable in a block, and restore it afterwards."""
-    before = os.environ.get(name)
-    os.environ[name] = value
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ[name]
-        else:
-            os.environ[name] = before

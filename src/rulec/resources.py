@@ -1,11 +1,11 @@
-"""Rulec as it is installed: where its own files are, and how an extra is added."""
+"""Rulec as it is installed: its own files, how an extra is added, variables of its environment."""
 
 from __future__ import annotations
 
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from functools import cache
 from importlib.util import find_spec
 from json import loads
@@ -74,3 +74,21 @@ def install_command(extra: str) -> str:
             editable = "-e " if origin.get("dir_info", {}).get("editable") else ""
             return f"{pip} {editable}{quote(f'{path}[{extra}]')}"
     return f"{pip} {quote(f'rulec[{extra}]')}"
+
+
+@contextmanager
+def variable_set(name: str, value: str | None) -> Iterator[None]:
+    """Set an environment variable in a block, or unset it for None, and restore it afterwards."""
+    before = os.environ.get(name)
+    _set(name, value)
+    try:
+        yield
+    finally:
+        _set(name, before)
+
+
+def _set(name: str, value: str | None) -> None:
+    if value is not None:
+        os.environ[name] = value
+    else:
+        os.environ.pop(name, None)

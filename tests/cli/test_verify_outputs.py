@@ -347,3 +347,15 @@ def test_a_verdict_says_by_which_text_it_is(day, said, verify, capsys):
     session = Session(at=day)
     (first, *_) = session.verify_recording(A, "dated.rules").answers()
     assert first.answer.law._asdict() == {"rulebook": "dated", **laws[0]}
+
+
+@pytest.mark.parametrize("options", [["sarif"], ["jsonl"], ["jsonl", "--exposure"], ["csv"]])
+def test_times_beyond_all_numbers_are_left_out(options, tmp_path, capsys):
+    lines = Path("docs/samples/traces.jsonl").read_text().splitlines()
+    file = tmp_path / "long.jsonl"
+    file.write_text("".join(f"{json.dumps(json.loads(x) | {'step_s': 1e308})}\n" for x in lines))
+    assert main(["verify", str(file), "-r", "esterle2019", "--output-format", *options]) == 1
+    written = capsys.readouterr().out
+    assert "R1" in written
+    assert "Infinity" not in written
+    assert ",inf," not in written

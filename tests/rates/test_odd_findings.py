@@ -40,3 +40,21 @@ def test_an_odd_value_in_any_field_is_refused_or_counted(name, tmp_path, capsys)
             said = capsys.readouterr()
             assert status == 0 or (status == 2 and "error[R" in said.err), said
             assert not any("\ud800" <= sign <= "\udfff" for sign in said.out)
+
+
+@pytest.mark.parametrize("form", ["json", "svg"])
+def test_a_drive_of_next_to_no_time_has_no_infinite_rate(form, tmp_path, capsys):
+    file = tmp_path / "findings.jsonl"
+    rows = [
+        {**row, "vehicle": vehicle, "duration_s": duration_s, "distance_m": 1e-306, "violated": 1}
+        for vehicle, duration_s in (("1", 1e-306), ("2", 1e-310))
+        for row in (DRIVE, RULE)
+    ]
+    file.write_text("".join(f"{json.dumps(row)}\n" for row in rows))
+    assert main(["rates", str(file), "--output-format", form]) == 0
+    text = capsys.readouterr().out
+    assert "Infinity" not in text
+    if form == "json":
+        (rule,) = json.loads(text)["rules"]
+        assert rule["per_hour"] is None
+        assert rule["per_1000_km"] is None

@@ -54,6 +54,18 @@ def test_who_is_quiet_or_waits_says_nothing(words, soon):
         assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
 
 
+def test_a_line_that_is_due_when_all_is_done_does_no_harm(soon, monkeypatch):
+    def stop_late(which, first_s, again_s=0.0):
+        if not first_s:
+            signal.raise_signal(signal.SIGALRM)
+        return original(which, first_s, again_s)
+
+    original = signal.setitimer
+    monkeypatch.setattr(signal, "setitimer", stop_late)
+    with patience(["diff", "de", "fr"]):
+        pass
+
+
 def test_a_program_of_its_own_keeps_its_signals(soon, capsys):
     assert main(["list", "--quiet"]) == main(["--quiet", "list"]) == 0
     assert signal.getsignal(signal.SIGALRM) == signal.SIG_DFL

@@ -259,6 +259,13 @@ def test_mcap_has_one_time_line(rules):
         written(rules, "mcap", FOUND, FOUND)
 
 
+@pytest.mark.parametrize("at_s", [2e10, 1e300])
+def test_mcap_counts_no_centuries(rules, at_s):
+    late = RecordingFindings("f", "A", ("4",), (of("slow", from_s=at_s, to_s=at_s),))
+    with pytest.raises(RulecError, match="MCAP counts time in ns up to 584 years"):
+        written(rules, "mcap", late)
+
+
 def test_messages_in_mcap_are_found_by_their_time(rules):
     given = [of(name, from_s=at, to_s=9.0) for name, at in (("c", 3.0), ("a", 1.0), ("b", 2.0))]
     content = written(rules, "mcap", RecordingFindings("f", "A", ("4",), tuple(given)))

@@ -9,7 +9,7 @@ from rulec.extraction.traces.recorded_drive import Drive
 from rulec.extraction.violation_evidence import trace_for, whom_of
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import NotJudged, Violation
-from rulec.report.findings.findings_of_drives import DriveFindings, violated
+from rulec.report.findings.findings_of_drives import DriveFindings
 from rulec.report.findings.verdict_finding import VerdictFinding
 from rulec.report.verdicts import verdict_report
 from rulec.report.verdicts.state_times import StateTimes
@@ -27,7 +27,7 @@ class DriveAccounts:
         self, violation: Violation, drive: Drive, explanation: Explanation | None
     ) -> VerdictFinding:
         """A violation as a finding."""
-        return violated(violation, drive, self._verdicts, explanation)
+        return self.findings.violated(violation, drive, explanation)
 
     def explained(self, violations: Sequence[Violation], drive: Drive) -> list[Explanation]:
         """Explanations of violations of a drive."""

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
+
+from rulec.resources import variable_set
 
 _VARIABLE = "RULEC_NAMES_OPTIONS"
 
@@ -41,16 +42,9 @@ _QUOTED = re.compile(_OPTION + "(?: (.+))?")
 _FORMAT_OF_TRACES = re.compile(r"add `--input-format (\w+)`")
 
 
-@contextmanager
-def naming_options() -> Iterator[None]:
+def naming_options() -> AbstractContextManager[None]:
     """Keep option names in messages in a block, and in processes started in it."""
-    before = os.environ.get(_VARIABLE)
-    os.environ[_VARIABLE] = "1"
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ[_VARIABLE]
+    return variable_set(_VARIABLE, "1")
 
 
 def for_caller(text: str) -> str:

@@ -86,9 +86,7 @@ def diagnostic_rows(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:
             "code": diagnostic.code,
             "severity": diagnostic.severity,
             "message": diagnostic.message,
-            "file": diagnostic.place.file if diagnostic.place else None,
-            "line": diagnostic.place.line if diagnostic.place else None,
-            "column": diagnostic.place.column if diagnostic.place else None,
+            **{part: getattr(diagnostic.place, part, None) for part in ("file", "line", "column")},
             "help": diagnostic.help,
         }
         for diagnostic in diagnostics

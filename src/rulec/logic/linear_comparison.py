@@ -18,6 +18,17 @@ MIRRORED: Mapping[Relation, Relation] = {
     ">=": "<=",
     ">": "<",
 }
+"""Relation -> the one with its sides exchanged."""
+
+DENIED: Mapping[Relation, Relation] = {
+    "<": ">=",
+    "<=": ">",
+    "=": "!=",
+    "!=": "=",
+    ">=": "<",
+    ">": "<=",
+}
+"""Relation -> the one that holds where it does not."""
 
 
 def comparison(

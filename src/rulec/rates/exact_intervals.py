@@ -44,12 +44,9 @@ def binomial_interval(least: tuple[int, int], most: tuple[int, int], confidence:
     tail = (1 - confidence) / 2
     (k, n), (k_most, n_most) = least, most
     low = float(special.betaincinv(k, n - k + 1, tail)) if k else 0.0
-    high = (
-        1.0
-        if k_most >= n_most
-        else float(special.betaincinv(k_most + 1, n_most - k_most, 1 - tail))
-    )
-    return low, high
+    if k_most >= n_most:
+        return low, 1.0
+    return low, float(special.betaincinv(k_most + 1, n_most - k_most, 1 - tail))
 
 
 @dataclass(frozen=True, slots=True)

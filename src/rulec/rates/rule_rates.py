@@ -27,6 +27,9 @@ from rulec.value_display import Rows, short_repr
 
 S_PER_HOUR = 3600.0
 
+SHORTEST = 1e-9
+"""A drive's duration (h) or distance (km) below this counts as 0: a rate might be infinite."""
+
 
 @dataclass(frozen=True, slots=True)
 class Rate:
@@ -109,17 +112,11 @@ def violation_rates(
     result, called = [], _names(counted)
     for (rulebook, group), drives in sorted(groups.items(), key=lambda item: item[0][1]):
         rules = counted.rules.get(rulebook, {})
-        sums = _Sums(drives, list(rules))
-        drawn = sums.drawn(seed, replicates)
         name = called[rulebook]
-        group = tuple(
-            [
-                name if key == "rulebook" else value
-                for key, value in zip(counted.by, group, strict=True)
-            ]
-        )
-        for number, (rule, title) in enumerate(rules.items()):
-            own = _RuleSums(sums, drawn, number, confidence)
+        pairs = zip(counted.by, group, strict=True)
+        group = tuple([name if key == "rulebook" else value for key, value in pairs])
+        sums = _rule_sums(drives, list(rules), confidence, (seed, replicates))
+        for own, (rule, title) in zip(sums, rules.items(), strict=True):
             result.append(_rule_rates(group, name, (rule, title), own))
     return ViolationRates(
         by=counted.by,
@@ -163,39 +160,36 @@ _COLUMNS = (
 _AT = {name: place for place, name in enumerate(_COLUMNS)}
 
 
-class _Sums:
-    """Sums over drives, with ``_COLUMNS`` for each rule."""
+def _rule_sums(
+    drives: Sequence[DriveCounts], rules: Sequence[str], confidence: float, drawn: tuple[int, int]
+) -> Iterator[_RuleSums]:
+    """The sums of each rule over drives, and over resampled ones: ``drawn`` are seed and number."""
+    n_columns = len(rules) * len(_COLUMNS)
 
-    def __init__(self, drives: Sequence[DriveCounts], rules: Sequence[str]) -> None:
-        self._drives = drives
-        self._rules = rules
-        self.n_columns = len(rules) * len(_COLUMNS)
-        self.total = np.zeros(self.n_columns)
-        self.squares = np.zeros(self.n_columns)
-        self.largest = np.zeros(self.n_columns)
-        for block in self.blocks():
-            self.total += block.sum(axis=0)
-            self.squares += (block**2).sum(axis=0)
-            self.largest = np.maximum(self.largest, block.max(axis=0, initial=0.0))
-
-    def blocks(self) -> Iterator[Sums]:
+    def blocks() -> Iterator[Sums]:
         """The values (drives x columns) of the drives, block by block."""
-        for begin in range(0, len(self._drives), DRIVES_TOGETHER):
-            part = self._drives[begin : begin + DRIVES_TOGETHER]
-            block = np.array([_numbers(drive, self._rules) for drive in part], dtype=np.float64)
-            yield block.reshape(len(part), self.n_columns)
+        for begin in range(0, len(drives), DRIVES_TOGETHER):
+            part = drives[begin : begin + DRIVES_TOGETHER]
+            block = np.array([_numbers(drive, rules) for drive in part], dtype=np.float64)
+            yield block.reshape(len(part), n_columns)
 
-    def drawn(self, seed: int, replicates: int) -> Sums | None:
-        """The sums over resampled drives; None for fewer than two drives."""
-        if len(self._drives) < 2:
-            return None
-        return bootstrapped(len(self._drives), self.n_columns, self.blocks(), seed, replicates)
+    total, squares, largest = np.zeros((3, n_columns))
+    for block in blocks():
+        total += block.sum(axis=0)
+        squares += (block**2).sum(axis=0)
+        np.maximum(largest, block.max(axis=0, initial=0.0), out=largest)
+    # With fewer than two drives, drawing again says nothing.
+    again = bootstrapped(len(drives), n_columns, blocks(), *drawn) if len(drives) > 1 else None
+    for begin in range(0, n_columns, len(_COLUMNS)):
+        own = slice(begin, begin + len(_COLUMNS))
+        resampled = None if again is None else again[:, own]
+        yield _RuleSums(total[own], squares[own], largest[own], resampled, confidence)
 
 
 def _numbers(drive: DriveCounts, rules: Sequence[str]) -> list[float]:
-    hours = drive.duration_s / S_PER_HOUR
     is_far = drive.distance_m is not None
-    km = (drive.distance_m or 0.0) / 1000
+    lengths = drive.duration_s / S_PER_HOUR, (drive.distance_m or 0.0) / 1000
+    hours, km = (length if length >= SHORTEST else 0.0 for length in lengths)
     numbers: list[float] = []
     for rule in rules:
         if rule in drive.not_judged:
@@ -219,29 +213,33 @@ def _numbers(drive: DriveCounts, rules: Sequence[str]) -> list[float]:
     return numbers
 
 
+@dataclass(frozen=True, slots=True)
 class _RuleSums:
-    """The sums of one rule, and its sums over resampled drives."""
+    """The ``_COLUMNS`` of one rule: sums, sums of squares, largest values of a drive.
 
-    def __init__(self, sums: _Sums, drawn: Sums | None, number: int, confidence: float) -> None:
-        self._begin = number * len(_COLUMNS)
-        self._sums = sums
-        self._drawn = drawn
-        self._confidence = confidence
+    ``drawn`` are the sums over resampled drives (replicates x columns).
+    """
+
+    total: Sums
+    squares: Sums
+    largest: Sums
+    drawn: Sums | None
+    confidence: float
 
     def __getitem__(self, name: str) -> float:
-        return float(self._sums.total[self._begin + _AT[name]])
+        return float(self.total[_AT[name]])
 
     def count(self, name: str) -> int:
         """A sum of whole numbers, as an int."""
         return round(self[name])
 
     def per_length(self, violated: tuple[str, str], length: str, scale: float) -> Rate | None:
-        """The rate per ``scale`` units of a duration or distance; None if that is 0."""
+        """The rate per ``scale`` units of a duration (h) or distance (km); None if that is 0."""
         if not self[length]:
             return None
         least, most = (self.count(name) for name in violated)
         factor = scale / self[length]
-        low, high = poisson_interval(least, most, self._confidence)
+        low, high = poisson_interval(least, most, self.confidence)
         bootstrap = self._bootstrap(violated, (length, length))
         if bootstrap is not None:
             bootstrap = bootstrap[0] * scale, bootstrap[1] * scale
@@ -264,7 +262,7 @@ class _RuleSums:
         return Rate(
             least[0] / least[1] if least[1] else 0.0,
             most[0] / most[1] if most[1] else 0.0,
-            binomial_interval(least, most, self._confidence),
+            binomial_interval(least, most, self.confidence),
             self._bootstrap(violated, of),
             (
                 min(fewest / least[1], 1.0) if least[1] else 0.0,
@@ -274,20 +272,19 @@ class _RuleSums:
 
     def _clustered(self, violated: tuple[str, str]) -> Interval:
         """The interval of the expected number of violations, with drives as clusters."""
-        at = [self._begin + _AT[name] for name in violated]
-        sizes = [ClusterSizes(float(self._sums.total[n]), float(self._sums.squares[n])) for n in at]
+        least, most = (ClusterSizes(self[x], float(self.squares[_AT[x]])) for x in violated)
         most_of_a_drive = ("perhaps_opportunities", "most_opportunities")
-        largest = max(self._sums.largest[self._begin + _AT[name]] for name in most_of_a_drive)
-        return clustered_interval(sizes[0], sizes[1], float(largest), self._confidence)
+        largest = max(float(self.largest[_AT[name]]) for name in most_of_a_drive)
+        return clustered_interval(least, most, largest, self.confidence)
 
     def _bootstrap(self, violated: tuple[str, str], of: tuple[str, str]) -> Interval | None:
-        if self._drawn is None or not self[violated[1]]:
+        if self.drawn is None or not self[violated[1]]:
             return None
+        drawn = self.drawn
         least, most = (
-            (self._drawn[:, self._begin + _AT[v]], self._drawn[:, self._begin + _AT[n]])
-            for v, n in zip(violated, of, strict=True)
+            (drawn[:, _AT[v]], drawn[:, _AT[n]]) for v, n in zip(violated, of, strict=True)
         )
-        return percentile_interval(least, most, self._confidence)
+        return percentile_interval(least, most, self.confidence)
 
 
 _VIOLATED = ("violated", "perhaps_violated")
@@ -324,19 +321,15 @@ def _as_row(rates: RuleRates, by: Sequence[GroupKey]) -> dict[str, Any]:
     row |= {field.name: getattr(rates, field.name) for field in _PLAIN}
     for name in RATES:
         rate: Rate | None = getattr(rates, name)
-        bootstrap = (None, None) if rate is None else rate.bootstrap or (None, None)
-        exact = (None, None) if rate is None else rate.exact
-        clustered = (None, None) if rate is None else rate.clustered
-        row |= {
-            name: None if rate is None else rate.least,
-            f"perhaps_{name}": None if rate is None else rate.most,
-            f"{name}_low": exact[0],
-            f"{name}_high": exact[1],
-            f"{name}_drives_low": bootstrap[0],
-            f"{name}_drives_high": bootstrap[1],
-            f"{name}_clustered_low": clustered[0],
-            f"{name}_clustered_high": clustered[1],
-        }
+        row[name] = None if rate is None else rate.least
+        row[f"perhaps_{name}"] = None if rate is None else rate.most
+        for kind, interval in (
+            ("", "exact"),
+            ("_drives", "bootstrap"),
+            ("_clustered", "clustered"),
+        ):
+            low, high = getattr(rate, interval, None) or (None, None)
+            row |= {f"{name}{kind}_low": low, f"{name}{kind}_high": high}
     return row
 
 

@@ -17,6 +17,8 @@ from rulec.report.pictures.picture_captions import ticks
         (-60, 140, 12, [-60, -40, -20, 0, 20, 40, 60, 80, 100, 120, 140]),
         (0.1, 0.9, 4, [0.2, 0.4, 0.6, 0.8]),
         (-1, 9, 1, [0]),
+        (0, 5e-324, 10, []),
+        (-1e308, 1e308, 10, []),
     ],
 )
 def test_examples(low, high, at_most, expected):

@@ -19,8 +19,7 @@ from rulec.automata.bundle.minisign import (
     public_key,
 )
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.resource_limits import variable_set
-from rulec.resources import install_command
+from rulec.resources import install_command, variable_set
 
 VARIABLE = "RULEC_REQUIRE_SIGNED"
 """The path of a public key, or the key itself; unset or empty if no signature is required."""

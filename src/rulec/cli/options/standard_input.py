@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -17,6 +16,7 @@ from rulec.cli.options.verb_class import invocation_of
 from rulec.files.file_messages import no_input
 from rulec.files.read_files import STANDARD_INPUT_COPY, opened
 from rulec.files.written_files import TEMPORARY, temporary_files
+from rulec.resources import variable_set
 
 STANDARD_INPUT = "-"
 
@@ -129,11 +129,8 @@ def _in_place_of_a_file(usual: str) -> Iterator[str]:
             name := Path(f"standard input{'' if number == 1 else f' {number}'}{ending}")
         ).exists():
             number += 1
-        os.environ[STANDARD_INPUT_COPY] = str(copy.rename(copy.with_name(name.name)))
-        try:
+        with variable_set(STANDARD_INPUT_COPY, str(copy.rename(copy.with_name(name.name)))):
             yield str(name)
-        finally:
-            del os.environ[STANDARD_INPUT_COPY]
 
 
 @contextmanager

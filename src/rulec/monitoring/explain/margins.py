@@ -9,7 +9,7 @@ from math import ceil, floor, log10
 
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import Between, Unknown, weighted_sum
-from rulec.logic.linear_comparison import MIRRORED, stands
+from rulec.logic.linear_comparison import DENIED, MIRRORED, stands
 from rulec.logic.printing import term_text
 from rulec.monitoring.state_view import StateView
 from rulec.vocabulary import Quantity
@@ -17,14 +17,6 @@ from rulec.vocabulary import Quantity
 _Quantity = ltl.QuantityTerm
 _MOST_PLACES, _ROUNDED_UP, _HAIR = 7, 1.5, 1e-6
 _BASE = frozenset(("<", "<=", "="))
-_OTHERWISE: Mapping[ltl.Relation, ltl.Relation] = {
-    "<": ">=",
-    "<=": ">",
-    "=": "!=",
-    "!=": "=",
-    ">=": "<",
-    ">": "<=",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +154,7 @@ def margin_in(
     (value, value_error), (rest, limit_error) = _middle(value), _middle(rest)
     limit = comparison.limit + rest
     holds = stands(value, comparison.relation, limit)
-    relation = comparison.relation if holds else _OTHERWISE[comparison.relation]
+    relation = comparison.relation if holds else DENIED[comparison.relation]
     (_, lead), *more = left
     declaration = view.vocabulary.declarations[lead.name] if isinstance(lead, _Quantity) else None
     unit = declaration.unit if isinstance(declaration, Quantity) else ""
@@ -201,7 +193,7 @@ def choosing_comparisons(formula: ltl.Formula) -> Set[ltl.Formula]:
         match part:
             case ltl.Comparison(terms, relation, limit):
                 is_base = relation in _BASE
-                about[part] = terms, limit, relation if is_base else _OTHERWISE[relation]
+                about[part] = terms, limit, relation if is_base else DENIED[relation]
                 signs.setdefault(about[part], set()).add(plain is is_base)
             case ltl.Unary(ltl.UnaryOperator.NOT, ltl.Comparison() as inner):
                 look(inner, plain=not plain)

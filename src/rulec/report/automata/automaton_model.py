@@ -105,8 +105,7 @@ _COLORS = {"violated": "red", "satisfied": "green"}
 
 
 def _leaving(transitions: list[Transition], state: int, width: int) -> list[str]:
-    ordered = [transition for transition in transitions if not transition.otherwise]
-    ordered += [transition for transition in transitions if transition.otherwise]
+    ordered = sorted(transitions, key=lambda transition: transition.otherwise)
     targets = [
         "stays" if transition.target == state else f"to state {transition.target}"
         for transition in ordered

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sys
+from bisect import bisect_right
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import groupby
+from itertools import accumulate, groupby
 from pathlib import Path
 from typing import TextIO
 
@@ -84,19 +85,16 @@ def _window(excerpt: str, place: SourceLocation, columns: int) -> tuple[list[str
     if whole and sum(widths) <= columns:
         return cells, 0, False, False
     here = column - start
-    first = here
-    lead = 0
-    while first > 0 and lead + widths[first - 1] <= _LEAD:
-        first -= 1
-        lead += widths[first]
+    first = here - _fitting(widths[:here][::-1], _LEAD)
     if start == 0 and sum(widths[:here]) <= _LEAD * 2:
         first = 0
-    last = first
-    columns_left = columns
-    while last < len(cells) and columns_left >= widths[last]:
-        columns_left -= widths[last]
-        last += 1
+    last = first + _fitting(widths[first:], columns)
     return cells[first:last], start + first, start + first > 0, start + last < len(excerpt)
+
+
+def _fitting(widths: Iterable[int], columns: int) -> int:
+    """How many of these cells, from the first one on, fit into some columns."""
+    return bisect_right(list(accumulate(widths)), columns)
 
 
 _FRAME = "bold blue"

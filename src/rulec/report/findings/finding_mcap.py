@@ -30,6 +30,7 @@ LEAST_SHOWN_S = 1.0
 """The time for which a violation is shown at least."""
 
 _NS = 1_000_000_000
+_NEVER_NS = 1 << 64
 _TEXT_HEIGHT_M = 3.0
 _LEVELS = {"hard": 4, "soft": 3}
 _INFO = 2
@@ -72,6 +73,12 @@ class McapWriter:
             "not_judged": ", ".join(name for name in not_judged if name),
         }
         messages = [message for finding in recording.findings for message in _messages(finding)]
+        if any(time >= _NEVER_NS for time, _, _ in messages):
+            raise UNWRITABLE_FILE.error(
+                SourceLocation(self._name),
+                "MCAP counts time in ns up to 584 years, and some finding is later",
+                help="write JSON Lines or CSV, or give the trace its real `step_s`",
+            )
         # Standard output has no positions
         content = BytesIO()
         writer = Writer(content, compression=CompressionType.NONE)
@@ -96,7 +103,7 @@ def _messages(finding: VerdictFinding) -> Iterator[tuple[int, str, dict[str, Any
     at_s = finding.from_s if finding.at_s is None else finding.at_s
     if at_s is None:
         return
-    begin_ns = max(0, round(at_s * _NS))
+    begin_ns = max(0, round(at_s * _NS)) if at_s < _NEVER_NS else _NEVER_NS
     # Without null values, which fit none of the types announced to viewers
     known = {name: value for name, value in finding.row().items() if value is not None}
     yield begin_ns, "/rulec/findings", {"version": 1, **known}

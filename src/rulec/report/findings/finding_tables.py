@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
+from math import inf
 from typing import IO, Any
 
 from rulec.report.findings.verdict_finding import COLUMNS, EMPTY_CELLS, RecordingFindings
@@ -31,8 +32,14 @@ class RowWriter:
             stream.write(csv_text([columns]).encode())
 
     def add(self, rows: Iterable[Mapping[str, object]]) -> None:
-        """Write rows; a column that one lacks is empty."""
-        cells = [[row.get(name, nothing) for name, nothing in self._empty] for row in rows]
+        """Write rows; a column that one lacks, and a number beyond all floats, is empty."""
+        cells = [
+            [
+                nothing if (value := row.get(name, nothing)) == inf else value
+                for name, nothing in self._empty
+            ]
+            for row in rows
+        ]
         if self._form == "csv":
             self._stream.write(csv_text(cells).encode())
         elif self._form == "parquet":

@@ -4,24 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.diagnostics import RulecError
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.violation_evidence import evidence_of
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Violation
-from rulec.report.findings.verdict_finding import (
-    RecordingFindings,
-    VerdictFinding,
-    left_open,
-    measured,
-    named_law,
-    named_rule,
-    not_judged,
-)
+from rulec.report.findings.verdict_finding import FindingSource, RecordingFindings, VerdictFinding
 
 
 @dataclass
@@ -40,13 +30,13 @@ class GatheredFindings:
             self.not_judged.setdefault(rule, {}).update(by_drive)
 
 
-@dataclass
 class DriveFindings:
     """The findings of a recording, gathered drive by drive."""
 
-    verdicts: RecordingVerdicts
-    file: str
-    gathered: GatheredFindings = field(default_factory=GatheredFindings)
+    def __init__(self, verdicts: RecordingVerdicts, file: str) -> None:
+        self.gathered = GatheredFindings()
+        self._verdicts, self._file = verdicts, file
+        self._source = FindingSource(verdicts.rules, file, verdicts.recording.name)
 
     def add(
         self, result: DriveVerdict | NoDrive, explained: Sequence[Explanation] = ()
@@ -55,96 +45,56 @@ class DriveFindings:
 
         Returns the drive's findings: first violations, then open verdicts, in the verdict's order.
         """
-        before = len(self.gathered.findings)
-        self._take(result, explained)
-        return self.gathered.findings[before:]
+        found = list(self._found(result, explained))
+        self.gathered.findings += found
+        return found
 
-    def _take(self, result: DriveVerdict | NoDrive, explained: Sequence[Explanation]) -> None:
+    def violated(
+        self, violation: Violation, drive: Drive, explanation: Explanation | None
+    ) -> VerdictFinding:
+        """The finding of a violation; ``explanation`` explains it, if already made."""
+        rules, assumed = self._verdicts.rules, self._verdicts.request.assumed
+        evidence = evidence_of(violation, drive, rules, assumed, explanation)
+        return self._source.violated(
+            violation,
+            drive.arrays.id,
+            evidence.margins,
+            other=(*violation.binding.values(), *evidence.whom),
+            from_s=evidence.from_s,
+            to_s=evidence.to_s,
+            at_s=evidence.at_s,
+            rests_on=evidence.rests_on,
+            **({} if evidence.place is None else evidence.place._asdict()),
+        )
+
+    def _found(
+        self, result: DriveVerdict | NoDrive, explained: Sequence[Explanation]
+    ) -> Iterator[VerdictFinding]:
         if isinstance(result, NoDrive):
-            own = self._own(vehicle=result.ego, because=result.why)
-            self.gathered.findings.append(VerdictFinding(outcome="not_judged", **own))
+            yield self._source.nothing_judged(result.ego, result.why)
             return
-        drive, answer = result.drive, result.answer
+        drive, answer, vehicle = result.drive, result.answer, result.drive.arrays.id
         if isinstance(answer, NotJudged):
-            why = answer.error.diagnostics[0].message
-            own = self._own(vehicle=drive.arrays.id, because=why)
-            self.gathered.findings.append(VerdictFinding(outcome="not_judged", **own))
+            yield self._source.nothing_judged(vehicle, answer.error.diagnostics[0].message)
             return
-        self.gathered.judged.append(drive.arrays.id)
+        self.gathered.judged.append(vehicle)
         for number, violation in enumerate(answer.violations):
             explanation = explained[number] if number < len(explained) else None
-            found = violated(violation, drive, self.verdicts, explanation, self.file)
-            self.gathered.findings.append(found)
-        rules = {rule.name: rule for rule in self.verdicts.rules.rules}
-        for result_ in answer.open:
-            finding = VerdictFinding(
-                vehicle=drive.arrays.id,
-                from_s=drive.time_s(0),
-                to_s=drive.time_s(None),
-                **left_open(result_),
-                **self._about(rules[result_.rule]),
-            )
-            self.gathered.findings.append(finding)
+            yield self.violated(violation, drive, explanation)
+        for doubtful in answer.open:
+            yield self._source.left_open(doubtful, vehicle, drive.time_s(0), drive.time_s(None))
         for rule in answer.not_judged:
-            self.gathered.not_judged.setdefault(rule.rule, {})[drive.arrays.id] = rule
+            self.gathered.not_judged.setdefault(rule.rule, {})[vehicle] = rule
 
     def whole(self) -> RecordingFindings:
         """All findings; a rule that is judged in no drive gives one finding."""
         drives = tuple(self.gathered.judged)
-        return RecordingFindings(
-            self.file,
-            self.verdicts.recording.name,
-            drives,
-            (*self.gathered.findings, *self._rules_not_judged(len(drives))),
-        )
-
-    def _rules_not_judged(self, drives: int) -> Iterator[VerdictFinding]:
-        rules = {rule.name: rule for rule in self.verdicts.rules.rules}
-        for name, by_drive in self.gathered.not_judged.items():
-            everywhere = len(by_drive) == drives
+        findings = [*self.gathered.findings]
+        for by_drive in self.gathered.not_judged.values():
+            everywhere = len(by_drive) == len(drives)
             for vehicle, rule in [*by_drive.items()][: 1 if everywhere else None]:
-                # A rule that is too large at the recording's step is not among the compiled rules.
-                too_large = self._own(rule=name, strength=rule.strength)
-                yield VerdictFinding(
-                    vehicle="" if everywhere else vehicle,
-                    **not_judged(rule),
-                    **(self._about(rules[name]) if name in rules else too_large),
-                )
-
-    def _own(self, **fields: Any) -> dict[str, Any]:
-        where = {"file": self.file, "recording": self.verdicts.recording.name}
-        return {**where, **named_law(self.verdicts.rules), **fields}
-
-    def _about(self, rule: CompiledRule) -> dict[str, Any]:
-        return self._own(**named_rule(rule))
-
-
-def violated(
-    violation: Violation,
-    drive: Drive,
-    verdicts: RecordingVerdicts,
-    explanation: Explanation | None,
-    file: str = "",
-) -> VerdictFinding:
-    """The finding of a violation in a drive; ``explanation`` explains it, if already made."""
-    evidence = evidence_of(violation, drive, verdicts.rules, verdicts.request.assumed, explanation)
-    place = {} if evidence.place is None else evidence.place._asdict()
-    rules = {rule.name: rule for rule in verdicts.rules.rules}
-    return VerdictFinding(
-        file=file,
-        recording=verdicts.recording.name,
-        outcome="violated",
-        vehicle=drive.arrays.id,
-        other=(*violation.binding.values(), *evidence.whom),
-        from_s=evidence.from_s,
-        to_s=evidence.to_s,
-        at_s=evidence.at_s,
-        rests_on=evidence.rests_on,
-        **measured(evidence.margins),
-        **place,
-        **named_law(verdicts.rules),
-        **named_rule(rules[violation.rule]),
-    )
+                findings.append(self._source.not_judged(rule, "" if everywhere else vehicle))
+        return RecordingFindings(self._file, self._verdicts.recording.name, drives, tuple(findings))
 
 
 def not_judged_file(file: str, error: RulecError, rulebook: str) -> RecordingFindings:

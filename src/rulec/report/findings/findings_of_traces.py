@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Sequence
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics.argument_kinds import is_finite
 from rulec.logic.free_names import names_in
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.report.findings.verdict_finding import (
-    VerdictFinding,
-    left_open,
-    measured,
-    named_law,
-    named_rule,
-    not_judged,
-)
+from rulec.report.findings.verdict_finding import FindingSource, VerdictFinding
 from rulec.trace import Trace
 
 
@@ -25,43 +18,33 @@ def trace_findings(
     trace: Trace,
     answer: Verdict,
     rulebook: CompiledRulebook,
-    explained: list[Explanation],
+    explained: Sequence[Explanation],
 ) -> Iterator[VerdictFinding]:
     """The findings of a trace; ``explained`` are explanations of its first violations."""
-    rules = {rule.name: rule for rule in rulebook.rules}
-    law = named_law(rulebook)
-
-    def about(rule: CompiledRule) -> dict[str, Any]:
-        return {"file": file, "vehicle": answer.trace, **law, **named_rule(rule)}
-
-    presumed = {*answer.presumed}
+    source, vehicle, presumed = FindingSource(rulebook, file), answer.trace, {*answer.presumed}
     for number, violation in enumerate(answer.violations):
-        read = names_in(rules[violation.rule].formula)
         explanation = (
             explained[number]
             if number < len(explained)
             else explain(violation, trace, rulebook, repaired=False)
         )
         first, last = explanation.lasts
-        yield VerdictFinding(
-            outcome="violated",
+        is_presumed = presumed.intersection(names_in(explanation.rule.formula))
+        yield source.violated(
+            violation,
+            vehicle,
+            explanation.margins(),
             other=tuple(violation.binding.values()),
             from_s=_time_s(trace, first),
             to_s=_time_s(trace, last),
             at_s=_time_s(trace, explanation.decisive),
-            rests_on="default" if presumed.intersection(read) else "measured",
-            **measured(explanation.margins()),
-            **about(rules[violation.rule]),
+            rests_on="default" if is_presumed else "measured",
         )
+    lasts = _time_s(trace, 0), _time_s(trace, len(trace.states) - 1)
     for result in answer.open:
-        yield VerdictFinding(
-            from_s=_time_s(trace, 0),
-            to_s=_time_s(trace, len(trace.states) - 1),
-            **left_open(result),
-            **about(rules[result.rule]),
-        )
+        yield source.left_open(result, vehicle, *lasts)
     for rule in answer.not_judged:
-        yield VerdictFinding(**not_judged(rule), **about(rules[rule.rule]))
+        yield source.not_judged(rule, vehicle)
 
 
 def not_judged_trace(file: str, answer: NotJudged, rulebook: str) -> VerdictFinding:
@@ -75,6 +58,7 @@ def not_judged_trace(file: str, answer: NotJudged, rulebook: str) -> VerdictFind
     )
 
 
-def _time_s(trace: Trace, state: int) -> float:
-    """The time of a state (s), from the first state on."""
-    return round(state * trace.step_s, 9)
+def _time_s(trace: Trace, state: int) -> float | None:
+    """The time of a state (s), from the first state on; None if it is beyond all floats."""
+    time_s = state * trace.step_s
+    return round(time_s, 9) if is_finite(time_s) else None

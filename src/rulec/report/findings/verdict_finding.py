@@ -9,7 +9,7 @@ from typing import Any, Literal, get_type_hints
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.rulebook_edition import edition_of
-from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged
+from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged, Violation
 from rulec.report.json_document import JsonDocument, made_class
 from rulec.report.text.terminal_text import cut
 from rulec.rulebook.rulebook_model import cited_law
@@ -111,17 +111,6 @@ class VerdictFinding:
         return f"{title} is not judged for {vehicle}{on}{why}"
 
 
-def named_law(rules: CompiledRulebook) -> dict[str, Any]:
-    """The columns of a finding that identify its rulebook and the text of the law."""
-    edition = edition_of(rules)
-    return {
-        "rulebook": rules.name,
-        "rulebook_hash": edition.rulebook_hash,
-        "law": edition.law,
-        "as_of": edition.as_of,
-    }
-
-
 def named_rule(rule: CompiledRule) -> dict[str, Any]:
     """The columns of a finding that identify its rule and the law that it comes from."""
     return {
@@ -152,19 +141,59 @@ def measured(margins: Iterable[Margin]) -> dict[str, Any]:
     }
 
 
-def left_open(result: OpenVerdict) -> dict[str, Any]:
-    """The columns of an open verdict."""
-    return {
-        "outcome": "open",
-        "other": tuple(result.binding.values()),
-        "open_on": tuple(result.depends_on),
-        "because": ", ".join(result.because),
-    }
+class FindingSource:
+    """What findings come from: a file, perhaps a recording in it, and a rulebook.
 
+    Makes the findings of what becomes of the rules for a vehicle.
+    """
 
-def not_judged(rule: RuleNotJudged) -> dict[str, Any]:
-    """The columns of a rule that could not be judged."""
-    return {"outcome": "not_judged", "open_on": tuple(rule.untold), "because": rule.why}
+    def __init__(self, rules: CompiledRulebook, file: str, recording: str = "") -> None:
+        edition = edition_of(rules)._asdict()
+        law = {name: edition[name] for name in ("rulebook", "rulebook_hash", "law", "as_of")}
+        self._shared = {"file": file, "recording": recording, **law}
+        self._rules = {rule.name: rule for rule in rules.rules}
+
+    def violated(
+        self, violation: Violation, vehicle: str, margins: Iterable[Margin], **evidence: Any
+    ) -> VerdictFinding:
+        """A violation; ``evidence`` are the columns of its times, its place and its grounds."""
+        return self._finding(violation, "violated", vehicle, **measured(margins), **evidence)
+
+    def left_open(
+        self, result: OpenVerdict, vehicle: str, from_s: float | None, to_s: float | None
+    ) -> VerdictFinding:
+        """An open verdict on a drive that lasts ``from_s`` to ``to_s``."""
+        return self._finding(
+            result,
+            "open",
+            vehicle,
+            other=tuple(result.binding.values()),
+            from_s=from_s,
+            to_s=to_s,
+            open_on=tuple(result.depends_on),
+            because=", ".join(result.because),
+        )
+
+    def not_judged(self, rule: RuleNotJudged, vehicle: str) -> VerdictFinding:
+        """A rule that could not be judged."""
+        lacking = tuple(rule.untold)
+        return self._finding(rule, "not_judged", vehicle, open_on=lacking, because=rule.why)
+
+    def nothing_judged(self, vehicle: str, why: str) -> VerdictFinding:
+        """A vehicle for which no rule could be judged."""
+        return VerdictFinding(outcome="not_judged", vehicle=vehicle, because=why, **self._shared)
+
+    def _finding(
+        self,
+        result: Violation | OpenVerdict | RuleNotJudged,
+        outcome: Outcome,
+        vehicle: str,
+        **columns: Any,
+    ) -> VerdictFinding:
+        rule = self._rules.get(result.rule)
+        # A rule that is too large at the recording's step is not among the compiled rules.
+        about = named_rule(rule) if rule else {"rule": result.rule, "strength": result.strength}
+        return VerdictFinding(outcome=outcome, vehicle=vehicle, **columns, **about, **self._shared)
 
 
 def time_in_words(finding: VerdictFinding) -> str:

@@ -21,7 +21,7 @@ from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.terminal_text import broken, cut, shown_count, table_lines, visible
-from rulec.report.verdicts.verdict_report import open_in_words
+from rulec.report.verdicts.verdict_report import about, open_in_words
 from rulec.rulebook.rulebook_model import cited_law
 
 if TYPE_CHECKING:
@@ -175,7 +175,7 @@ def _as_driven(maneuver: Maneuver, driven: TrajectoryScores | None) -> list[str]
         parts.append("leaves the road")
     violated = [
         f"{'soft ' if violation.strength == 'soft' else ''}{violation.rule}"
-        + (f" for {bound_objects(violation.binding)}" if violation.binding else "")
+        + about(violation.binding)
         + ("" if violation.step is None else f" from {driven.time_s(violation.step):g} s on")
         for violation in score.violations
     ]
@@ -244,13 +244,7 @@ def _rule_title(maneuvers: Maneuvers, finding: Violation | OpenVerdict) -> str:
     rule = next(rule for rule in maneuvers.rules.rules if rule.name == finding.rule)
     law = cited_law(rule.cite, rule.inherited_from)
     cite = f" [{law}]" if law else ""
-    bound = f" for {bound_objects(finding.binding)}" if finding.binding else ""
-    return f"{rule.strength} rule {rule.name}{cite}{bound}"
-
-
-def bound_objects(binding: Mapping[str, str]) -> str:
-    """The variables of a rule and the objects bound to them."""
-    return ", ".join(f"{name} = {visible(item)}" for name, item in binding.items())
+    return visible(f"{rule.strength} rule {rule.name}{cite}{about(finding.binding)}")
 
 
 def _when_lost(maneuvers: Maneuvers, violation: Violation) -> str:
@@ -275,7 +269,7 @@ def _of_rule(rule_probability: RuleProbability) -> str:
         return f"not known: more than {MOST_WORLDS:,} worlds make a difference"
     bindings = rule_probability.bindings
     parts = [
-        f"{shown_chance(binding.kept, binding.at_most)} for {bound_objects(binding.binding)}"
+        visible(f"{shown_chance(binding.kept, binding.at_most)}{about(binding.binding)}")
         for binding in bindings[:MOST_BINDINGS]
     ]
     if len(bindings) > MOST_BINDINGS:

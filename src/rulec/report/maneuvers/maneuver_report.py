@@ -25,6 +25,7 @@ from rulec.report.text.terminal_text import (
     table_lines,
     visible,
 )
+from rulec.report.verdicts.verdict_report import about
 from rulec.scenario import Account, Scenario
 
 if TYPE_CHECKING:
@@ -279,9 +280,8 @@ def _without_rules(maneuvers: Maneuvers) -> Iterator[str]:
 
 def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
     for violation in violations[:MOST_VIOLATIONS]:
-        objects = maneuver_blocks.bound_objects(violation.binding)
-        about = f" for {objects}" if objects else ""
-        yield visible(f"violated    {violation.rule}{about}, before, and not counted any more")
+        what = f"{violation.rule}{about(violation.binding)}"
+        yield visible(f"violated    {what}, before, and not counted any more")
     if len(violations) > MOST_VIOLATIONS:
         yield f"            and {len(violations) - MOST_VIOLATIONS:,} more; --json has them all"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import ceil, floor, isfinite, log10
+from math import ceil, floor, inf, log10
 from typing import TYPE_CHECKING
 
 from rulec.report.pictures.drawing import canvas
@@ -60,9 +60,12 @@ def _swatch(style: str, x: float, y: float) -> Mark:
 
 
 def ticks(low: float, high: float, at_most: int) -> list[float]:
-    """Multiples of 1, 2 or 5 powers of ten within an interval; none if the interval is infinite."""
+    """Multiples of 1, 2 or 5 powers of ten within an interval.
+
+    None if the interval is infinite, or too short for nine decimals.
+    """
     span = high - low
-    if not isfinite(span):
+    if not 1e-8 <= span < inf:
         return []
     power = 10.0 ** floor(log10(span / at_most))
     # The logarithm may be rounded down from a whole number, so that 10 would just not be enough.

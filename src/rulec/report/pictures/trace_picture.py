@@ -18,7 +18,7 @@ from rulec.report.pictures.trace_ribbon import (
     in_words,
     value_style,
 )
-from rulec.report.text.terminal_text import counted
+from rulec.report.text.terminal_text import clipped, counted
 from rulec.report.verdicts.verdict_report import MOST_VIOLATIONS, in_a_line
 from rulec.trace.trace_model import plain_step_s
 
@@ -207,7 +207,7 @@ def _times(axis: _Axis, y: float) -> Iterator[Mark]:
 
 
 def _title(row: RibbonRow) -> str:
-    text = row.title if len(row.title) <= WIDEST_TITLE else f"{row.title[: WIDEST_TITLE - 1]}…"
+    text = clipped(row.title, WIDEST_TITLE)
     if row.values:
         return text
     low, high = map(in_words, extremes(row))

@@ -8,6 +8,7 @@ from itertools import groupby
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.logic.formula import Atom
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_view import value_in
 from rulec.monitoring.verdict import Verdict, Violation
@@ -122,24 +123,20 @@ def _row(
     trace: Trace, vocabulary: Vocabulary, name: str, objects: tuple[str, ...]
 ) -> RibbonRow | None:
     declaration = vocabulary.declarations[name]
-    if len(declaration.parameters) != len(objects) or not all(
-        vocabulary.is_subtype(trace.objects[item], kind)
-        for item, kind in zip(objects, declaration.parameters, strict=True)
-    ):
+    kinds, parameters = [trace.objects[item] for item in objects], declaration.parameters
+    if len(kinds) != len(parameters) or not all(map(vocabulary.is_subtype, kinds, parameters)):
         return None
     presences = [trace.present.get(item, (0, len(trace.states))) for item in objects]
-    there = [
-        all(first <= number <= last for first, last in presences)
-        for number in range(len(trace.states))
-    ]
+    states = range(len(trace.states))
+    there = [all(first <= state <= last for first, last in presences) for state in states]
     given = [
         value_in(state, name, objects, declaration) if present else None
         for state, present in zip(trace.states, there, strict=True)
     ]
-    error = max((value.error for value in given if isinstance(value, Interval)), default=0.0)
     if not any(there):
         return None
-    title = f"{name}({', '.join(objects)})" if objects else name
+    error = max((value.error for value in given if isinstance(value, Interval)), default=0.0)
+    title = str(Atom(name, objects))
     possible: tuple[Value, ...] = (False, True)
     match declaration:
         case Enumeration():

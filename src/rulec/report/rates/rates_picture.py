@@ -12,6 +12,7 @@ from math import ceil, floor, log10
 from rulec.rates.exact_intervals import Interval
 from rulec.rates.rule_rates import RATES, Rate, RuleRates, ViolationRates
 from rulec.report.pictures.drawing.canvas import (
+    CHARACTER,
     MARGIN,
     WIDTH,
     LabelText,
@@ -24,6 +25,7 @@ from rulec.report.pictures.drawing.canvas import (
 )
 from rulec.report.pictures.drawing.picture_formats import Drawing
 from rulec.report.rates.rates_table import group_title, number
+from rulec.report.text.terminal_text import clipped
 
 PER = {"per_hour": "per hour", "per_1000_km": "per 1000 km", "per_opportunity": "per opportunity"}
 """The rates that a picture can show -> their names."""
@@ -81,7 +83,7 @@ def _forest(title: str, rates: ViolationRates, shown: Sequence[tuple[RuleRates, 
         marks.append(LabelText(f"{value:g}", (x, bottom + _FOOT / 2), "middle", "faint"))
     for place, ((_, rate), name) in enumerate(zip(shown, names, strict=True)):
         y = _HEAD + _ROW * (place + 0.5)
-        marks.append(LabelText(_shortened(name), (MARGIN, y)))
+        marks.append(LabelText(clipped(name, int(_LONGEST_NAME / CHARACTER)), (MARGIN, y)))
         marks += _row(rate, y, across)
     return Picture(title, WIDTH, height, tuple(marks))
 
@@ -120,8 +122,3 @@ def _decades(values: Sequence[float]) -> tuple[int, int]:
 def _name(rule: RuleRates, rates: ViolationRates) -> str:
     group = group_title(rule.group, rates.by)
     return f"{rule.rule} ({group})" if group else rule.rule
-
-
-def _shortened(name: str) -> str:
-    most = int(_LONGEST_NAME / text_width("x")) if name else 0
-    return name if len(name) <= most else f"{name[: most - 1]}…"

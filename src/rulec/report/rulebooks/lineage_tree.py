@@ -239,10 +239,8 @@ def as_json(inherited: rule_lineage.BookLineage) -> str:
     """Write the chain, the rules' histories and the provisions."""
     rules = []
     for history in inherited.rules:
-        steps = [filled(LineageStepData, step) for step in history.steps]
-        gone = history.rule is None
-        law = inherited.inherited_from(history)
-        rules.append(filled(RuleLineageData, history, gone=gone, steps=steps, inherited_from=law))
+        law, gone = inherited.inherited_from(history), history.rule is None
+        rules.append(filled(RuleLineageData, history, gone=gone, inherited_from=law))
     return as_indented(filled(LineageDocument, inherited, rulebook=inherited.book, rules=rules))
 
 

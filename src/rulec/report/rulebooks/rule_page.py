@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from msgspec import UNSET, UnsetType, structs
+from msgspec import UNSET, UnsetType
 
 from rulec.analysis.believable_states import declarations_read
 from rulec.analysis.rule_traces import rule_traces
@@ -264,24 +264,21 @@ def as_document(rulebook: Rulebook, rules: Sequence[Rule], page: RulePage | None
 
 
 def _rule(rule: Rule, rulebook: Rulebook, page: RulePage | None) -> RuleData:
-    said = sentences_of(rule, rulebook)
-    data = filled(
+    said, details = sentences_of(rule, rulebook), {}
+    if page is not None:
+        states = [
+            StateData(state=state, fate=fate) for state, fate in enumerate(page.automaton.fates)
+        ]
+        automaton = AutomatonData(states=states, transitions=page.automaton.transitions)
+        details = {"automaton": automaton, "accepts": page.accepted, "rejects": page.rejected}
+    return filled(
         RuleData,
         rule,
         weight=float(rule.weight),
-        step_s=UNSET,
+        step_s=UNSET if page is None else page.step_s and float(page.step_s),
         sentence=in_one_line(said.requirement),
         restrictions=[*map(in_one_line, said.restrictions)],
         definitions=[*map(in_one_line, said.definitions)],
         formula=formula_text(rule.formula),
-    )
-    if page is None:
-        return data
-    states = [StateData(state=state, fate=fate) for state, fate in enumerate(page.automaton.fates)]
-    return structs.replace(
-        data,
-        automaton=AutomatonData(states=states, transitions=page.automaton.transitions),
-        step_s=None if page.step_s is None else float(page.step_s),
-        accepts=page.accepted,
-        rejects=page.rejected,
+        **details,
     )

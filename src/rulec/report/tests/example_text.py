@@ -120,12 +120,9 @@ def _part(rule: RuleCoverage) -> float:
 
 
 def _missing_parts(rule: RuleCoverage) -> str:
-    parts = (
-        (rule.missing_edges, "edge"),
-        (rule.missing_values, "value"),
-        (rule.missing_limits, "limit"),
-    )
-    return f"misses {', '.join(counted(len(part), noun) for part, noun in parts if part)}"
+    missing = (rule.missing_edges, rule.missing_values, rule.missing_limits)
+    parts = zip(map(len, missing), ("edge", "value", "limit"), strict=True)
+    return f"misses {', '.join(counted(number, noun) for number, noun in parts if number)}"
 
 
 def asked_rules(
@@ -203,17 +200,14 @@ def shortcomings(
 def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Iterator[str]:
     """The lines of each rule's coverage, with missing parts indented below."""
     for rule in rules:
-        edges = f"{rule.n_edges - len(rule.missing_edges):,} of {rule.n_edges:,} edges"
-        values = (
-            f"{rule.n_values - len(rule.missing_values):,} of {rule.n_values:,} values of atoms"
-        )
+        parts = [
+            (rule.n_edges, rule.missing_edges, "edges"),
+            (rule.n_values, rule.missing_values, "values of atoms"),
+        ]
+        parts += [(rule.n_limits, rule.missing_limits, "sides of limits")] if rule.n_limits else []
+        shares = ", ".join(f"{n - len(lost):,} of {n:,} {what}" for n, lost, what in parts)
         origin = " (inherited)" if rule.inherited else ""
-        limits = (
-            f", {rule.n_limits - len(rule.missing_limits):,} of {rule.n_limits:,} sides of limits"
-            if rule.n_limits
-            else ""
-        )
-        lines = [f"{rule.rule}{origin}: {edges}, {values}{limits} ({as_percent(percent([rule]))})"]
+        lines = [f"{rule.rule}{origin}: {shares} ({as_percent(percent([rule]))})"]
         for atom, value in rule.missing_values:
             text = _shortened(formula_text(atom))
             lines.append(f"`{text}` is never {'true' if value else 'false'}")

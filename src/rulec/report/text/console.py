@@ -21,8 +21,6 @@ from rulec.report.text.terminal_text import visible, wants_color
 if TYPE_CHECKING:
     from rulec.report.text.progress_bar import ProgressBar
 
-REFRESH_S = 0.2
-
 PAGE_WIDTH = 80
 """The width of a text that is not shown on a terminal."""
 
@@ -123,13 +121,13 @@ def patience(arguments: Sequence[str]) -> Iterator[None]:
             os.write(2, f"{text}\n".encode(errors="backslashreplace"))
 
     before = signal.signal(signal.SIGALRM, tell)
-    signal.setitimer(signal.ITIMER_REAL, _FIRST_S, _AGAIN_S)
-    try:
-        with doing(f"at work on `rulec {' '.join(arguments)}`"):
+    with doing(f"at work on `rulec {' '.join(arguments)}`"):
+        signal.setitimer(signal.ITIMER_REAL, _FIRST_S, _AGAIN_S)
+        try:
             yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, before)
 
 
 @contextmanager

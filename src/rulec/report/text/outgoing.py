@@ -13,13 +13,11 @@ from collections.abc import Iterable
 from io import RawIOBase
 from typing import IO, Any, Final
 
-from rulec.report.text.terminal_text import visible
+from rulec.report.text.terminal_text import HIDDEN, as_escape, visible
 
-_CONTROLS: Final = "\x00-\x08\x0b-\x1f\x7f-\x9f"
-REORDERING: Final = "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
 _STYLE: Final = re.compile("(\x1b\\[[0-9;]*m)")
 """Colours, which rulec itself writes and which do no harm."""
-_HIDDEN: Final = re.compile(f"[{_CONTROLS}{REORDERING}\u2028\u2029\ufeff\ud800-\udfff]")
+_HIDDEN: Final = re.compile(f"[{HIDDEN}]")
 _ANYWHERE: Final = re.compile(r"(?<=#)#(?=\[|vso\[|teamcity\[)")
 _AT_START: Final = re.compile(r"^([^\S\n]*):(?=:(?!: ))", re.MULTILINE)
 """Commands of GitHub's, Azure's and TeamCity's runners, anywhere or at the start of a line.
@@ -52,7 +50,7 @@ def outgoing(text: str, form: str = "text", *, color: bool = False) -> str:
     if _HIDDEN.search(text):
         parts = _STYLE.split(text) if color else [text]
         # Every second part is a style.
-        parts[::2] = [_HIDDEN.sub(_as_escape, part) for part in parts[::2]]
+        parts[::2] = [_HIDDEN.sub(as_escape, part) for part in parts[::2]]
         text = "".join(parts)
     if form == "github":
         return text
@@ -102,12 +100,7 @@ def _as_json(match: re.Match[str]) -> str:
 def _as_reference(match: re.Match[str]) -> str:
     # XML has no references for control characters, so their code is shown.
     code = ord(match[0])
-    return f"&#x{code:x};" if code > 0x9F and not 0xD800 <= code < 0xE000 else _as_escape(match)
-
-
-def _as_escape(match: re.Match[str]) -> str:
-    code = ord(match[0])
-    return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"
+    return f"&#x{code:x};" if code > 0x9F and not 0xD800 <= code < 0xE000 else as_escape(match)
 
 
 def csv_text(rows: Iterable[Iterable[object]], line_end: str = "\r\n") -> str:

@@ -13,6 +13,8 @@ from typing import TextIO
 
 from click import unstyle
 
+from rulec.resources import variable_set
+
 MOST_DIGITS = 30
 
 _PLAIN, _COLORED = "NO_COLOR", "FORCE_COLOR"
@@ -39,22 +41,24 @@ _KEPT_TOGETHER = re.compile(
     r"|\d (?=(?:km/h|m/s²?|ms|s|min|h|m|km|t|kg|%)(?![\w/]))"
 )
 
-_REORDERING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u061c")
+HIDDEN = (
+    "\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\u2028\u2029\ufeff"
+    "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
+)
+"""Control characters but for tabs and line feeds, surrogates, line ends, and reordering marks."""
+
+_NOT_VISIBLE = re.compile(f"[\t\n{HIDDEN}]")
 
 
 def visible(text: str) -> str:
     """Escape control characters, line ends and reordering marks in a text."""
-    return text if text.isprintable() else "".join(map(_shown, text))
+    return text if text.isprintable() else _NOT_VISIBLE.sub(as_escape, text)
 
 
-def _shown(character: str) -> str:
-    if character.isprintable():
-        return character
-    code = ord(character)
-    category = unicodedata.category(character)
-    if category in ("Cc", "Cs", "Zl", "Zp") or character in _REORDERING or character == "\ufeff":
-        return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"
-    return character
+def as_escape(match: re.Match[str]) -> str:
+    """The character that was matched, as Python escapes it."""
+    code = ord(match[0])
+    return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"
 
 
 @contextmanager
@@ -63,20 +67,12 @@ def colored(choice: str) -> Iterator[None]:
 
     It is set in the environment, so that it also applies to other processes.
     """
-    before = dict(os.environ)
-    try:
-        for name in (_PLAIN, _COLORED):
-            os.environ.pop(name, None)
-        if choice == "auto":
-            os.environ.update({name: before[name] for name in (_PLAIN,) if name in before})
-        else:
-            os.environ[_COLORED if choice == "always" else _PLAIN] = "1"
+    plain = os.environ.get(_PLAIN) if choice == "auto" else None
+    with (
+        variable_set(_PLAIN, "1" if choice == "never" else plain),
+        variable_set(_COLORED, "1" if choice == "always" else None),
+    ):
         yield
-    finally:
-        for name in (_PLAIN, _COLORED):
-            os.environ.pop(name, None)
-            if name in before:
-                os.environ[name] = before[name]
 
 
 def wants_color(stream: TextIO) -> bool:
@@ -212,6 +208,11 @@ def cut(text: str, width: int) -> str:
         line += character
     head, _, word = line.rpartition(" ")
     return f"{head if head.strip() and len(word) <= _LONGEST_CUT else line} …"
+
+
+def clipped(text: str, widest: int) -> str:
+    """A text, cut to a number of characters."""
+    return text if len(text) <= widest else f"{text[: widest - 1]}…"
 
 
 def column_lines(rows: Sequence[Sequence[str]], width: int, *, indent: str = "") -> list[str]:

@@ -95,7 +95,11 @@ def as_text(
     lines = [f"altogether  {recordings} with {counted(total.judged, 'drive')}"]
     if unread:
         lines.append(f"not read    {counted(len(unread), 'file')}, as said above")
-    lines += broken(f"rules       {_rules(total, rules)}", width, later=" " * 12)
+    is_open = {*+total.open_in}
+    counts = verdict_report.rule_counts(
+        rules.rules, total.with_verdict, is_open, "these recordings"
+    )
+    lines += broken(f"rules       {counts}", width, later=" " * 12)
     violated = [rule for rule in rules.rules if rule.name in total.drives]
     if violated:
         rows = [("violated", "", " drives", " recordings")]
@@ -112,22 +116,11 @@ def as_text(
         head, *table = table_lines(rows, right=(2, 3))
         lines += ["", cut(visible(head), width)]
         for rule, line in zip(violated, table, strict=True):
-            first = visible(_first(total.first[rule.name]))
+            file, ego, at = total.first[rule.name]
             lines.append(cut(visible(line), width))
-            lines += broken(f"first: {first}", width, "  ", "    ")
+            lines += broken(visible(f"first: {ego} at {at:g} s in {file}"), width, "  ", "    ")
     lines.append(verdict_report.summary(total.outcomes, total.not_judged, "drive"))
     return "\n".join(lines)
-
-
-def _rules(total: BatchTally, rules: CompiledRulebook) -> str:
-    return verdict_report.rule_counts(
-        rules.rules, total.with_verdict, {*+total.open_in}, "these recordings"
-    )
-
-
-def _first(first: tuple[str, str, float]) -> str:
-    file, ego, at = first
-    return f"{ego} at {at:g} s in {file}"
 
 
 def as_columns(

@@ -11,18 +11,10 @@ from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics.phrases import any_of
 from rulec.logic.formula import Atom, Comparison, Count, QuantityTerm, Relation, atoms_of
+from rulec.logic.linear_comparison import DENIED
 from rulec.logic.sentences.wording import comparison_text, number_text, terms_text
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
-
-_DENIAL: dict[Relation, Relation] = {
-    "<": ">=",
-    ">=": "<",
-    "<=": ">",
-    ">": "<=",
-    "=": "!=",
-    "!=": "=",
-}
 
 _OF_WHOLE_NUMBERS: dict[Relation, tuple[Relation, int]] = {
     "<": ("<=", -1),
@@ -47,7 +39,7 @@ class GuardWording:
                 text = comparison_text(atom)
                 for relation, limit in _alike(atom):
                     self._said[atom.terms, relation, limit] = text
-                    self._said.setdefault((atom.terms, _DENIAL[relation], limit), _denied(text))
+                    self._said.setdefault((atom.terms, DENIED[relation], limit), _denied(text))
 
     def condition(self, cubes: Sequence[Cube]) -> str:
         """A condition that holds exactly for the letters of these cubes; ``true`` for all."""
@@ -135,18 +127,13 @@ def _alike(comparison: Comparison) -> Iterator[tuple[Relation, Fraction]]:
 
 def runs(numbers: Sequence[int]) -> list[range]:
     """Ascending numbers as ranges of consecutive ones."""
-    ranges: list[range] = []
-    for number in numbers:
-        if ranges and ranges[-1].stop == number:
-            ranges[-1] = range(ranges[-1].start, number + 1)
-        else:
-            ranges.append(range(number, number + 1))
-    return ranges
+    starts = [n for n, number in enumerate(numbers) if not n or number > numbers[n - 1] + 1]
+    ends = [*starts[1:], len(numbers)]
+    return [range(numbers[a], numbers[b - 1] + 1) for a, b in zip(starts, ends, strict=False)]
 
 
 def _denied(text: str) -> str:
     signs = _SIGN.findall(text)
     if len(signs) != 1:
         return f"not ({text})"
-    denial: Relation = _DENIAL[signs[0]]
-    return text.replace(signs[0], denial)
+    return text.replace(signs[0], DENIED[signs[0]])

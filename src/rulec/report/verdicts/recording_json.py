@@ -67,10 +67,9 @@ class NotDriven(JsonDocument, frozen=True, kw_only=True):
 
 def _margin_data(margin: Margin) -> MarginData:
     own: dict[str, Any] = {}
-    if bounds := margin.value_bounds:
-        own |= {"value": BoundsData(low=bounds[0], high=bounds[1]), "value_error": 0.0}
-    if bounds := margin.limit_bounds:
-        own |= {"limit": BoundsData(low=bounds[0], high=bounds[1]), "limit_error": 0.0}
+    for side, bounds in (("value", margin.value_bounds), ("limit", margin.limit_bounds)):
+        if bounds is not None:
+            own |= {side: BoundsData(low=bounds[0], high=bounds[1]), f"{side}_error": 0.0}
     return filled(MarginData, margin, **own)
 
 

@@ -17,6 +17,7 @@ from rulec.monitoring.online.monitor_state import SoFar, VerdictChange
 from rulec.report.json_document import JsonDocument, JsonPart, as_line, filled
 from rulec.report.text.terminal_text import styled, visible
 from rulec.report.verdicts.verdict_json import ErrorData, error_data
+from rulec.report.verdicts.verdict_report import about
 
 MOST_CHANGES = 20
 """Number of changes shown on a line; JSON has all of them."""
@@ -115,9 +116,8 @@ def as_text(so_far: SoFar) -> str:
 
 
 def _change(verdict_change: VerdictChange) -> str:
-    where = ", ".join(f"{name} = {item}" for name, item in verdict_change.binding.items())
-    about = f" for {where}" if where else ""
     left = "they parted" if len(verdict_change.binding) > 1 else "it left"
     perhaps = "perhaps " if isinstance(verdict_change.verdict, VerdictRange) else ""
     left = f", {perhaps}not fulfilled when {left}" if verdict_change.ended else ""
-    return f"{verdict_change.rule}{about}: {verdict_change.verdict}{left}"
+    what = f"{verdict_change.rule}{about(verdict_change.binding)}"
+    return f"{what}: {verdict_change.verdict}{left}"

@@ -124,7 +124,7 @@ def _open_lines(verdict: Verdict, rulebook: CompiledRulebook) -> Iterator[str]:
     rules = {rule.name: rule for rule in rulebook.rules}
     for result in verdict.open[:MOST_VIOLATIONS]:
         rule = rules[result.rule]
-        title = f"{rule.strength} rule {_title(rule, rulebook.name)}{_about(result.binding)}"
+        title = f"{rule.strength} rule {_title(rule, rulebook.name)}{about(result.binding)}"
         yield f"{title}: {open_in_words(result)}"
     if len(verdict.open) > MOST_VIOLATIONS:
         yield f"and {len(verdict.open) - MOST_VIOLATIONS:,} more open; --json has them all"
@@ -169,7 +169,8 @@ def _not_judged_lines(verdict: Verdict) -> Iterator[str]:
         yield f"not judged: {', '.join(rules)} ({why})"
 
 
-def _about(binding: Mapping[str, str]) -> str:
+def about(binding: Mapping[str, str]) -> str:
+    """The variables of a rule with their objects, such as `` for v = car``; empty without any."""
     where = ", ".join(f"{name} = {item}" for name, item in binding.items())
     return f" for {where}" if where else ""
 
@@ -186,7 +187,7 @@ def in_a_line(
         if violation.step is None
         else f"cannot be kept any more after state {violation.step}{times.of(violation.step)}"
     )
-    return f"{rule.strength} rule {_title(rule, rulebook)}{_about(violation.binding)}: {when}"
+    return f"{rule.strength} rule {_title(rule, rulebook)}{about(violation.binding)}: {when}"
 
 
 def short_title(rule: CompiledRule) -> str:

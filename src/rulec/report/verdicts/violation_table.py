@@ -22,7 +22,7 @@ from rulec.monitoring.explain.explained_parts import Observation, Part
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.explain.margins import Margin, number_with_error
 from rulec.report.text.console import PAGE_WIDTH
-from rulec.report.text.terminal_text import broken, styled, table_lines, visible
+from rulec.report.text.terminal_text import broken, clipped, styled, table_lines, visible
 from rulec.report.verdicts.guard_text import GuardWording, runs
 from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
 from rulec.rulebook.vocabulary_phrases import phrases_of
@@ -98,16 +98,11 @@ def as_text(explanation: Explanation, options: TableOptions = DEFAULT_OPTIONS) -
         for places in table.columns
     ]
     lines = broken(visible(explanation.rule.says), width, INDENT, INDENT)
-    lines += [*_in_words(explanation, options), *_repair(explanation, options)]
+    words = decisive_state_in_words(explanation, options.phrases, options.times)
+    lines += [*broken(words, width, INDENT, 2 * INDENT), *_repair(explanation, options)]
     rows = list(zip(titles, *columns, strict=True))
     lines += table_lines(rows, indent=INDENT, ruled=(0, table.n_facts))
     return "\n".join([*lines, *_left_out(explanation, table, width)])
-
-
-def _in_words(explanation: Explanation, options: TableOptions) -> Iterator[str]:
-    line = decisive_state_in_words(explanation, options.phrases, options.times)
-    if line:
-        yield from broken(line, options.width, INDENT, 2 * INDENT)
 
 
 def decisive_state_in_words(
@@ -301,11 +296,6 @@ def _folded(parts: Sequence[Part], at: int, depth: int, widest: int) -> Iterator
         yield from _folded(parts, operand, depth + 1, widest)
 
 
-def clipped(text: str, widest: int) -> str:
-    """A text, cut to a number of characters."""
-    return text if len(text) <= widest else f"{text[: widest - 1]}…"
-
-
 def _operands(parts: Sequence[Part], at: int) -> Iterator[int]:
     for operand in range(at + 1, len(parts)):
         if parts[operand].depth <= parts[at].depth:
@@ -365,15 +355,12 @@ def head(states: Sequence[int], places: range) -> str:
 
 
 def _merged(columns: Sequence[Sequence[str]], states: Sequence[int], decisive: int) -> list[range]:
-    ranges: list[range] = []
-    for place, column in enumerate(columns):
-        if (
-            place
-            and decisive not in (place, place - 1)
-            and states[place] == states[place - 1] + 1
-            and column == columns[place - 1]
-        ):
-            ranges[-1] = range(ranges[-1].start, place + 1)
-        else:
-            ranges.append(range(place, place + 1))
-    return ranges
+    starts = [
+        place
+        for place in range(len(columns))
+        if not place
+        or decisive in (place, place - 1)
+        or states[place] != states[place - 1] + 1
+        or columns[place] != columns[place - 1]
+    ]
+    return list(itertools.starmap(range, itertools.pairwise([*starts, len(columns)])))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
+from dataclasses import dataclass, field, fields
+from typing import Any, Literal, TypeAlias
 
 from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.extraction.traces.recorded_drive import NoDrive
@@ -52,26 +52,10 @@ class ViolationTally:
 
     def include(self, later: ViolationTally) -> None:
         """Add the counts of later drives."""
-        for outcome, drives in later.drives.items():
-            self.drives.setdefault(outcome, []).extend(drives)
-        self.not_judged += later.not_judged
-        for rule, times in later.first_s.items():
-            self.first_s.setdefault(rule, {}).update(times)
-        self.open_rules.update(later.open_rules)
-        self.open_on |= later.open_on
-        for rule, names in later.untold.items():
-            self.untold.setdefault(rule, {}).update(names)
-        self.reasons.update(later.reasons)
-        for rule, causes in later.causes.items():
-            about = self.causes.setdefault(rule, {})
-            for objects, members in causes.items():
-                about.setdefault(objects, []).extend(members)
-        self.judged_in.update(later.judged_in)
-        self.idle_in.update(later.idle_in)
-        self.open_hard += later.open_hard
-        self.faults.update(later.faults)
-        if later.words is not None:
-            self.words = later.words if self.words is None else self.words & later.words
+        words = [words for words in (self.words, later.words) if words is not None]
+        for part in fields(self):
+            setattr(self, part.name, _joined(getattr(self, part.name), getattr(later, part.name)))
+        self.words = frozenset.intersection(*words) if words else None
 
     def outcomes(self, rules: Iterable[str]) -> dict[str, RuleOutcome]:
         """What became of each of these rules."""
@@ -124,3 +108,17 @@ class ViolationTally:
         judged = [rule for rule in rules if rule not in doubtful]
         self.judged_in.update(judged)
         self.idle_in.update(idle.intersection(judged))
+
+
+def _joined(own: Any, later: Any) -> Any:
+    """Both counts, lists or sets, key by key in dicts; of other values the later one."""
+    if isinstance(own, dict):
+        for key, value in later.items():
+            own[key] = _joined(own[key], value) if key in own else value
+    elif isinstance(own, set):
+        own |= later
+    elif isinstance(own, int | list):
+        own += later
+    else:
+        return later
+    return own

@@ -10,6 +10,7 @@ from typing import Literal
 
 from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.code import missing_package
+from rulec.files.text_templates import filled
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.picture_messages import PNG_UNAVAILABLE
@@ -18,14 +19,6 @@ from rulec.report.text.html_page import policy
 from rulec.report.text.terminal_text import visible
 
 Format = Literal["svg", "png", "pdf", "html"]
-
-_SLIDER = """\
-<form id="time" hidden>
-<label for="slider">Time</label>
-<input id="slider" type="range" min="0" max="{last}" value="0" step="1">
-<output id="shown" for="slider"></output>
-<label><input id="all" type="checkbox"> all at once</label>
-</form>"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,30 +71,22 @@ def as_bytes(drawing: Drawing, form: str, file: str, theme: Theme = "auto") -> b
 
 def _as_page(drawing: Drawing) -> str:
     """A self-contained page, which is complete without its script."""
-    title = escape(visible(drawing.title))
     below = [drawing.legend] if drawing.legend else []
-    frames = "\n".join(_figure(picture) for picture in drawing.pictures)
     last = len(drawing.pictures) - 1
-    style = f"\n{as_css(_styles([*drawing.pictures, *below]))}\n{_beside('page.css')}"
-    scripts = [f"\n{_beside('slider.js')}"] if last > 0 else []
-    parts = [
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
-        f"<title>{title}</title>",
-        f'<meta http-equiv="Content-Security-Policy" content="{policy([style], scripts)}">',
-        '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        '<meta name="color-scheme" content="light dark">',
-        f"<style>{style}</style>",
-        f"</head>\n<body>\n<main>\n<h1>{title}</h1>",
-    ]
-    parts += [_SLIDER.format(last=last)] if last > 0 else []
-    parts.append(f'<div id="frames">\n{frames}\n</div>')
-    parts += [f"<aside>\n{_inline_svg(legend)}\n</aside>" for legend in below]
-    parts += [f"<script>{script}</script>" for script in scripts]
-    return "\n".join([*parts, "</main>\n</body>\n</html>\n"])
-
-
-def _beside(name: str) -> str:
-    return Path(__file__).with_name(name).read_text(encoding="utf-8")
+    here = Path(__file__)
+    css, script = (here.with_name(x).read_text("utf-8") for x in ("page.css", "slider.js"))
+    style = f"\n{as_css(_styles([*drawing.pictures, *below]))}\n{css}"
+    scripts = [f"\n{script}"] if last > 0 else []
+    places = {
+        "title": escape(visible(drawing.title)),
+        "policy": policy([style], scripts),
+        "style": style,
+        "slider": filled(here.with_name("slider.html"), {"last": last}) if last > 0 else (),
+        "frames": map(_figure, drawing.pictures),
+        "legend": [f"<aside>\n{_inline_svg(legend)}\n</aside>" for legend in below],
+        "scripts": [f"<script>{script}</script>" for script in scripts],
+    }
+    return filled(here.with_name("page.html"), places)
 
 
 def _figure(picture: Picture) -> str:

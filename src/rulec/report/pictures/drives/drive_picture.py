@@ -177,10 +177,13 @@ def _boxes(
     for body in scene.bodies:
         outline = body.outline(state)
         if body.id in ids and outline is not None:
-            (left, right), (top, bottom) = (
-                (min(axis), max(axis)) for axis in zip(*view.at(outline), strict=True)
-            )
-            yield left, top, right, bottom
+            yield _bounds(view.at(outline))
+
+
+def _bounds(points: Sequence[Point]) -> canvas.Rectangle:
+    """The rectangle around some points."""
+    xs, ys = zip(*points, strict=True)
+    return min(xs), min(ys), max(xs), max(ys)
 
 
 def _label(
@@ -189,8 +192,7 @@ def _label(
     outline, row = body.outline(state), body.row(state)
     if outline is None or row is None:
         return
-    points = view.at(outline)
-    (x0, x1), (y0, y1) = ((min(axis), max(axis)) for axis in zip(*points, strict=True))
+    x0, y0, x1, y1 = _bounds(view.at(outline))
     text = f"{body.id} · {body.speeds[row]:.0f} km/h" if speed else body.id
     half, x, y = canvas.text_width([text]) / 2 + 3, (x0 + x1) / 2, (y0 + y1) / 2
     places = [(x, y0 - 9), (x, y1 + 9), (x1 + half, y), (x0 - half, y)]
@@ -271,11 +273,8 @@ def _words(
         when = f"{violation.time_s:g} s"
         lines += [("strong", f"{when}  {violation.title}"), ("ink", violation.says)]
         lines += [("strong", f"measured {text}") for text in violation.measured]
-        lines += (
-            [("ink", f"with {', '.join(violation.deciding_values)}")]
-            if violation.deciding_values
-            else []
-        )
+        if violation.deciding_values:
+            lines.append(("ink", f"with {', '.join(violation.deciding_values)}"))
     others = [own for own in scene.violations if own is not violation]
     lines += [
         ("faint", f"{own.time_s:g} s  {own.rule}: {own.short}") for own in others[:_MOST_LISTED]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.diagnostics import first_of
 from rulec.extraction.presences import participant_called
 from rulec.extraction.recording_verdicts import RecordingVerdicts
@@ -50,25 +51,19 @@ def drive_scene(
     drive: Drive,
     verdict: Verdict,
     verdicts: RecordingVerdicts,
-    kept: frozenset[str] | None = None,
+    kept: frozenset[str] | None,
 ) -> DriveScene:
     """The scene of a drive, with its violations of the rules ``kept``; None for all rules.
 
     A recording that was mirrored for judging is drawn as recorded.
     """
-    chosen = [
-        violation for violation in verdict.violations if kept is None or violation.rule in kept
-    ]
-    verdict = replace(
-        verdict,
-        violations=tuple(chosen),
-        open=tuple(
-            open_verdict
-            for open_verdict in verdict.open
-            if kept is None or open_verdict.rule in kept
-        ),
-        not_judged=tuple(rule for rule in verdict.not_judged if kept is None or rule.rule in kept),
-    )
+    if kept is not None:
+        verdict = replace(
+            verdict,
+            violations=tuple(one for one in verdict.violations if one.rule in kept),
+            open=tuple(one for one in verdict.open if one.rule in kept),
+            not_judged=tuple(one for one in verdict.not_judged if one.rule in kept),
+        )
     recording = verdicts.recording
     if verdicts.mirrored:
         recording = mirrored_recording(recording)
@@ -85,6 +80,7 @@ def drive_scene(
     participants = {name: participant_called(name, known) for name in drive.arrays.objects}
     ids = {body.id: body for body in bodies}
     steps = range(first, first + drive.arrays.n_states)
+    in_time = sorted(verdict.violations, key=lambda one: inf if one.step is None else one.step)
     return DriveScene(
         title=f"{recording.name}, {trace_title(verdict, verdicts.rules)}",
         notes=tuple(_notes(verdicts, verdict)),
@@ -99,7 +95,7 @@ def drive_scene(
         bodies=bodies,
         violations=tuple(
             _violation(violation, drive, verdicts.rules, ids, participants)
-            for violation in _in_time(chosen)[:MOST_VIOLATIONS]
+            for violation in in_time[:MOST_VIOLATIONS]
         ),
     )
 
@@ -118,12 +114,6 @@ def _notes(verdicts: RecordingVerdicts, verdict: Verdict) -> Iterator[str]:
         yield "what the recording does not tell has its default"
     if verdicts.mirrored:
         yield "drawn as recorded; judged as its mirror image, so that left is right in the rules"
-
-
-def _in_time(violations: Sequence[Violation]) -> list[Violation]:
-    return sorted(
-        violations, key=lambda violation: float("inf") if violation.step is None else violation.step
-    )
 
 
 def _bodies(tracks: Tracks, ego: int, origin: Points) -> tuple[Body, ...]:
@@ -198,7 +188,7 @@ def _violation(
         state=state,
         time_s=drive.time_s(state),
         title=in_a_line(violation, rule, rules.name),
-        short=", ".join(filter(None, (rule.strength, rule.cite, _objects_of(violation)))),
+        short=_short(violation, rule),
         says=rule.says,
         against=against,
         measured=tuple(
@@ -217,10 +207,11 @@ def _violation(
     )
 
 
-def _objects_of(violation: Violation) -> str:
+def _short(violation: Violation, rule: CompiledRule) -> str:
+    """The rule's strength and its article, the objects, and whether only the end decides."""
     objects = " and ".join(violation.binding.values())
     end = "decided by the end" if violation.step is None else ""
-    return ", ".join(filter(None, (f"for {objects}" if objects else "", end)))
+    return ", ".join(filter(None, (rule.strength, rule.cite, objects and f"for {objects}", end)))
 
 
 def _deciding_values(explanation: Explanation) -> Iterator[str]:

@@ -230,31 +230,23 @@ def _relations(matrix: ComparisonMatrix, first: str, second: str) -> list[tuple[
 
 
 def _as_json(matrix: ComparisonMatrix) -> str:
-    return as_indented(
-        MatrixDocument(
-            books=[filled(BookData, book) for book in matrix.books],
-            rules=[_shared_rule(rule, matrix) for rule in matrix.rules],
-            pairs=[
-                _book_pair(matrix, *names)
-                for names in permutations((book.name for book in matrix.books), 2)
-            ],
-        )
+    names = [book.name for book in matrix.books]
+    rules = [
+        SharedRuleData(rule=rule.name, books=[_in_book(rule, name) for name in names])
+        for rule in matrix.rules
+    ]
+    pairs = [_book_pair(matrix, *pair) for pair in permutations(names, 2)]
+    return as_indented(filled(MatrixDocument, matrix, rules=rules, pairs=pairs))
+
+
+def _in_book(rule: SharedRule, book: str) -> RuleInBook:
+    own, remark = rule.rules.get(book), rule.remarks.get(book)
+    return RuleInBook(
+        name=book,
+        law=rule.letter(book) or None,
+        strength=own.strength if own else None,
+        because=remark.because if remark else None,
     )
-
-
-def _shared_rule(rule: SharedRule, matrix: ComparisonMatrix) -> SharedRuleData:
-    books = []
-    for name in (book.name for book in matrix.books):
-        own, remark = rule.rules.get(name), rule.remarks.get(name)
-        books.append(
-            RuleInBook(
-                name=name,
-                law=rule.letter(name) or None,
-                strength=own.strength if own else None,
-                because=remark.because if remark else None,
-            )
-        )
-    return SharedRuleData(rule=rule.name, books=books)
 
 
 def _book_pair(matrix: ComparisonMatrix, first: str, second: str) -> BookPairData:
