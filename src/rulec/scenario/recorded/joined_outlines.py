@@ -47,10 +47,11 @@ class JoinedOutlines:
                 repeats += [1] * len(own)
         return cls(np.concatenate(corners), np.repeat(counts, repeats))
 
-    @cached_property
-    def regular(self) -> bool:
-        """Whether all outlines have the same number of corners."""
-        return bool((self.counts == self.counts[0]).all())
+    def part(self, first: int, end: int) -> JoinedOutlines:
+        """Some consecutive outlines, by their indices."""
+        counts = self.counts[first:end]
+        begin = self.starts[first]
+        return JoinedOutlines(self.corners[begin : begin + counts.sum()], counts)
 
     @cached_property
     def starts(self) -> NDArray[intp]:
