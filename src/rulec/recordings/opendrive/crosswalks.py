@@ -11,7 +11,7 @@ from rulec.recordings.opendrive.content.elements import MapRoad, RoadObject
 from rulec.recordings.opendrive.lane_furniture import drivable, piece_at
 from rulec.recordings.opendrive.lane_lines import places_beside, span_at
 from rulec.recordings.opendrive.pieces import RoadPiece
-from rulec.recordings.opendrive.plan_view import places_on
+from rulec.recordings.opendrive.plan_view import place_on
 from rulec.recordings.opendrive.posted_signs import Posted
 from rulec.recordings.opendrive.signal_catalogues import CROSSWALK, WALKERS_LIGHTS
 from rulec.recordings.recording import LONGEST_M, Lanelet, Points
@@ -75,7 +75,7 @@ def _corners(road: MapRoad, thing: RoadObject) -> Points:
 
 
 def _heading(road: MapRoad, s: float) -> float:
-    return float(places_on(road.geometries, np.array([min(s, road.length)])).heading[0])
+    return place_on(road.geometries, min(s, road.length))[2]
 
 
 def _crosswalk(
