@@ -20,6 +20,7 @@ from rulec.recordings.recording import (
     TAXIS_TOO,
     Lanelet,
     LaneMark,
+    Light,
     Points,
 )
 from rulec.recordings.sumo.lane_kinds import lane_kinds
@@ -71,7 +72,11 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     driven = {key for key in origins if _permitted(net.lanes[key]) - _WALKERS - _RIDERS - _RAILS}
     kinds = lane_kinds(net, driven)
     junctions = _junctions(net)
-    lights, ways = net.lane_lights(step_s), net.way_lights(step_s)
+    ways: dict[str, dict[str, Light]] = defaultdict(dict)
+    lights: dict[str, dict[Light, None]] = defaultdict(dict)
+    for connection, light in net.lights(step_s):
+        lights[connection.start][light] = None
+        ways[connection.start][connection.via or connection.end] = light
     rights, signs = rights_of_ways(net), signs_of_lanes(net)
     # Leaves out the later lanes of ways through a junction that have several lanes
     entering = [x for x in net.connections if not x.start.startswith(":")]
