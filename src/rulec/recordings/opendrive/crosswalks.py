@@ -31,7 +31,8 @@ def crosswalks(
     road: MapRoad, pieces: Sequence[RoadPiece], posted: Sequence[Posted]
 ) -> Iterator[Lanelet]:
     """The crossings on a road as lanelets that lead across it."""
-    lights = [x.s for x in posted if x.signal.dynamic and x.signal.type in WALKERS_LIGHTS]
+    signals = [x.signal for x in posted]
+    lights = [x.s for x in signals if x.dynamic and x.type in WALKERS_LIGHTS]
     for number, thing in enumerate(road.objects):
         if is_crosswalk(thing):
             name = f"{road.id}.crosswalk {thing.id or number}"

@@ -103,14 +103,14 @@ class _Street:
 
 def sign_places(road: MapRoad, posted: Iterable[Posted]) -> list[float]:
     """The values of ``s`` at which signals make something begin or end, where the road is cut."""
-    return [x.s for x in posted if _parts(road, x)]
+    return [x.signal.s for x in posted if _parts(road, x)]
 
 
 def _parts(road: MapRoad, posted: Posted) -> bool:
     if any(HOLDS_ON.keys() & {sign.name, sign.untold} for sign in posted.signs):
         return True
-    left = {"+": road.length - posted.s, "-": posted.s}
-    ahead = left.get(posted.orientation, min(left.values()))
+    left = {"+": road.length - posted.signal.s, "-": posted.signal.s}
+    ahead = left.get(posted.signal.orientation, min(left.values()))
     stands_alone = ahead > AT_JUNCTION_M and not road.junction
     return stands_alone and (bool(posted.signs) or is_light(posted.signal, ()))
 
@@ -125,9 +125,9 @@ def lane_furniture(
     street = _Street(pieces, links)
     controlled = {signal for signals in content.controllers.values() for signal in signals}
     for road in content.roads.values():
-        for signal in sorted(posted[road.id], key=lambda x: x.s):
+        for signal in sorted(posted[road.id], key=lambda x: x.signal.s):
             _place_signal(street, road, signal, controlled)
-        for backward in sorted(posted[road.id], key=lambda x: -x.s):
+        for backward in sorted(posted[road.id], key=lambda x: -x.signal.s):
             _hold_on(street, road, backward, forward=False)
         for thing in road.objects:
             if is_stop_line_object(thing):
@@ -144,19 +144,19 @@ def _place_signal(
     if not (light or line or signs):
         return
     for key in _posted_lanes(street, road, posted):
-        for entry, way in _entries(street, road, key, posted.s):
+        for entry, way in _entries(street, road, key, posted.signal.s):
             own = street.at(entry)
             if light:
                 own.lit = True
                 if way is not None:
                     own.lit_to[way] = None
             elif line:
-                own.stop_line = key, posted.s
+                own.stop_line = key, posted.signal.s
             for sign in signs:
                 own.add(sign)
         for sign in signs:
             if (sign.untold or sign.name) in PRIORITY_SIGNS and not road.junction:
-                for onward in _onward(street, key, posted.s):
+                for onward in _onward(street, key, posted.signal.s):
                     street.at(onward).add(sign)
 
 
@@ -170,14 +170,14 @@ def _hold_on(street: _Street, road: MapRoad, posted: Posted, *, forward: bool) -
     if not signs:
         return
     for key in _posted_lanes(street, road, posted):
-        for onward in _onward(street, key, posted.s) if key.forward == forward else ():
+        for onward in _onward(street, key, posted.signal.s) if key.forward == forward else ():
             for sign in signs:
                 street.at(onward).hold(sign)
 
 
 def _posted_lanes(street: _Street, road: MapRoad, posted: Posted) -> list[LaneKey]:
-    piece = piece_at(street.pieces[road.id], posted.s)
-    return _lanes_at(piece, posted.orientation, posted.lanes)
+    piece = piece_at(street.pieces[road.id], posted.signal.s)
+    return _lanes_at(piece, posted.signal.orientation, posted.signal.lanes)
 
 
 def _lanes_at(

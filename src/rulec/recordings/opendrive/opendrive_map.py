@@ -24,13 +24,13 @@ from rulec.recordings.opendrive.lane_furniture import (
 )
 from rulec.recordings.opendrive.lane_lines import Lines, lane_borders, places_beside, span_at
 from rulec.recordings.opendrive.lane_links import LaneLinks, lane_links
-from rulec.recordings.opendrive.lane_marks import mark_beside
 from rulec.recordings.opendrive.lane_types import (
     LANE_TYPES,
     NO_LANE,
     RAMPS,
     lane_types,
     limit_at,
+    mark_beside,
     road_types,
 )
 from rulec.recordings.opendrive.pieces import LaneKey, Pieces, RoadPiece, pieces_of
@@ -164,19 +164,15 @@ def _lanelets(whole: _Whole) -> Iterator[Lanelet]:
         of_road[key.piece.road.id].add(key.name)
     for key in whole.lane_keys():
         roads = whole.crossroads.yields_to.get(key.piece.road.id)
-        lanelet = _lanelet(whole, key)
-        if roads is not None:
-            first = frozenset(name for road in roads for name in of_road[road])
-            lanelet = replace(lanelet, first=first)
-        yield lanelet
+        first = None if roads is None else {name for road in roads for name in of_road[road]}
+        yield _lanelet(whole, key, None if first is None else frozenset(first))
 
 
-def _lanelet(whole: _Whole, key: LaneKey) -> Lanelet:
+def _lanelet(whole: _Whole, key: LaneKey, first: frozenset[str] | None) -> Lanelet:
     piece, lane = key.piece, key.piece.section.lanes[key.lane]
     low, high = whole.borders[piece, key.lane]
     right, left = (low, high) if key.forward else (high[::-1], low[::-1])
     own = whole.furniture.get(key) or LaneFurniture()
-    junction = whole.crossroads.junction_of(piece.road.id)
     marks = [
         mark_beside(piece.section, key.lane, piece.middle, left=side == key.forward)
         for side in (True, False)
@@ -203,7 +199,8 @@ def _lanelet(whole: _Whole, key: LaneKey) -> Lanelet:
         left_mark=marks[0],
         right_mark=marks[1],
         stop_line=_stop_line(own),
-        junction=junction,
+        junction=whole.crossroads.junction_of(piece.road.id),
+        first=first,
     )
 
 

@@ -14,8 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rulec.recordings.opendrive.content.elements import LaneSection, MapRoad
-from rulec.recordings.opendrive.lane_marks import marks_of
-from rulec.recordings.opendrive.lane_types import BOTH_WAYS
+from rulec.recordings.opendrive.lane_types import BOTH_WAYS, marks_of
 
 SHORTEST_M = 1.0
 """Changes closer than this to another cut or an end of the section get no cut of their own."""
