@@ -185,14 +185,14 @@ def test_most_feet_beside_a_gentle_road_are_sure_without_trying_all_pieces(angle
     left = np.stack((-line.ahead[pieces, 1], line.ahead[pieces, 0]), axis=1)
     places = line.start[pieces] + (s - line.arc[pieces])[:, None] * line.ahead[pieces] + 8.1 * left
     _, found = sure_feet(line.piece_fans, places)
-    assert found.mean() > 0.9 if sure else not found.any()
+    assert (found >= 0).mean() > 0.9 if sure else (found < 0).all()
 
 
 def test_a_bend_too_small_to_divide_by_is_none():
     line = reference_line(np.array([(0.0, 0.0), (10.0, 0.0), (20.0, 1e-308)]))
     places = np.stack((np.linspace(1, 19, MANY), np.full(MANY, 3.0)), axis=1)
     _, found = sure_feet(line.piece_fans, places)
-    assert found.all()
+    assert (found >= 0).all()
 
 
 @pytest.mark.parametrize(("aside", "sure"), [(10.0, True), (59.9, True), (61.0, False)])
@@ -201,7 +201,7 @@ def test_feet_beside_a_circle_are_sure_up_to_its_centre(aside, sure):
     at, far = (np.arange(MANY) % 8 + 1.3) / 10 * pi / 8, RADIUS - aside
     places = np.stack((far * np.sin(at), RADIUS - far * np.cos(at)), axis=1)
     _, found = sure_feet(line.piece_fans, places)
-    assert found.all() if sure else not found.any()
+    assert (found >= 0).all() if sure else (found < 0).all()
 
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from([3.0, 40.0]), st.sampled_from([0.0, 1e6]))

@@ -47,10 +47,9 @@ class JoinedOutlines:
                 repeats += [1] * len(own)
         return cls(np.concatenate(corners), np.repeat(counts, repeats))
 
-    def part(self, first: int, end: int) -> JoinedOutlines:
-        """Some consecutive outlines, by their indices."""
-        counts = self.counts[first:end]
-        begin = self.starts[first]
+    def part(self, own: slice) -> JoinedOutlines:
+        """Some consecutive outlines, at least one."""
+        counts, begin = self.counts[own], self.starts[own][0]
         return JoinedOutlines(self.corners[begin : begin + counts.sum()], counts)
 
     @cached_property

@@ -307,9 +307,9 @@ def outline_bounds(
     )
     parts = []
     for first in range(0, len(middles), _AT_ONCE):
-        around = middles[first : first + _AT_ONCE, 0]
-        part = outlines.part(first, first + _AT_ONCE)
-        feet = line.coordinates_near(part.corners, around, part.reach, part.counts)
+        own = slice(first, first + _AT_ONCE)
+        part, around = outlines.part(own), middles[own, 0]
+        feet = line.coordinates_near(part.corners, around, outlines.reach[own], part.counts)
         feet[np.isnan(around).repeat(part.counts)] = np.nan
         parts.append(part.least_and_greatest(np.concatenate((feet.T, across(feet).T))))
     least, greatest = (np.concatenate(bounds) for bounds in zip(*parts, strict=True))

@@ -96,8 +96,8 @@ class ReferenceLine:
 
     def coordinates(self, places: Points) -> Points:
         """Frenet coordinates ``s`` and ``d`` of places, one row each; NaN without a foot."""
-        coordinates, sure = sure_feet(self.piece_fans, places)
-        left = (~sure).nonzero()[0]
+        coordinates, pieces = sure_feet(self.piece_fans, places)
+        left = (pieces < 0).nonzero()[0]
         low = np.zeros(len(left), dtype=intp)
         coordinates[left] = self._nearest(places[left], low, low + len(self.arc) - 1)
         return coordinates
@@ -112,9 +112,8 @@ class ReferenceLine:
         low, high = (self._piece(s).repeat(counts) for s in (around - reach, around + reach))
         if len(places) < MANY:
             return self._nearest(places, low, high)
-        coordinates, sure = sure_feet(self.piece_fans, places)
-        pieces = self._piece(coordinates[:, 0])
-        left = (~sure | (pieces < low) | (pieces > high)).nonzero()[0]
+        coordinates, pieces = sure_feet(self.piece_fans, places)
+        left = ((pieces < low) | (pieces > high)).nonzero()[0]
         coordinates[left] = self._nearest(places[left], low[left], high[left])
         return coordinates
 

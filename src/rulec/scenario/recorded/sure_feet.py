@@ -90,10 +90,13 @@ class PieceFans:
         return Borders(self.columns[7])
 
 
-def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
-    """Frenet coordinates of the places whose only foot on the line is found, and their mask."""
+def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[intp]]:
+    """Frenet coordinates of the places whose only foot on the line is found, and their pieces.
+
+    The number of a piece is -1 for other places.
+    """
     coordinates = np.full(places.shape, np.nan)
-    sure = np.zeros(len(places), dtype=bool)
+    found = np.full(len(places), -1)
     # The first and last pieces are the straight extensions, so these are the line's own corners
     corners = fans.columns[2:4, 1:].T
     middle, room = corners.mean(axis=0), float(fans.room.min())
@@ -102,7 +105,7 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
     length = float(np.hypot(*chord))
     # No guess for a line that ends where it begins: it has no chord
     if not length or (farthest >= room and len(places) < MANY):
-        return coordinates, sure
+        return coordinates, found
     ux, uy = (chord / length).tolist()
     first = float(fans.columns[7, 1])
     for begin in range(0, len(places), _AT_ONCE):
@@ -116,8 +119,8 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
         safe = inside & (near | (np.abs(d) < fans.alone.take(pieces)))
         np.copyto(coordinates[part, 0], s, where=safe)
         np.copyto(coordinates[part, 1], d, where=safe)
-        sure[part] = safe
-    return coordinates, sure
+        np.copyto(found[part], pieces, where=safe)
+    return coordinates, found
 
 
 def _on(
