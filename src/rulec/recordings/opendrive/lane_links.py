@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from rulec.recordings.lanes.lanes_along import led_to, reversed_links
 from rulec.recordings.opendrive.content.elements import (
     Connection,
     ContactPoint,
@@ -43,26 +44,17 @@ def lane_links(content: OpenDrive, pieces: Pieces) -> LaneLinks:
         for start, end in ((first, second.back), (second, first.back)):
             if start.is_driven and end.is_driven:
                 direct[start][end] = None
-    after = {key: tuple(_reached(direct, key)) for key in direct}
-    before: dict[LaneKey, dict[LaneKey, None]] = defaultdict(dict)
-    for start, ends in after.items():
-        if not start.piece.is_short:
-            for end in ends:
-                before[end][start] = None
+    after = {
+        # Not itself, as on a road that ends where it begins
+        key: tuple([x for x in led_to(direct, key, _is_long) if x != key])
+        for key in direct
+    }
+    before = reversed_links({key: ends for key, ends in after.items() if _is_long(key)})
     return LaneLinks(after, {key: tuple(lanes) for key, lanes in before.items()})
 
 
-def _reached(direct: Mapping[LaneKey, Mapping[LaneKey, None]], start: LaneKey) -> Iterator[LaneKey]:
-    waiting, seen = list(direct.get(start, ())), {start}
-    while waiting:
-        key = waiting.pop(0)
-        if key in seen:
-            continue
-        seen.add(key)
-        if key.piece.is_short:
-            waiting += direct.get(key, ())
-        else:
-            yield key
+def _is_long(key: LaneKey) -> bool:
+    return not key.piece.is_short
 
 
 def _joints(content: OpenDrive, pieces: Pieces) -> Iterator[_Joint]:
