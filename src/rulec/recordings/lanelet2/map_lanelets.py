@@ -24,7 +24,7 @@ REVERSED = "_reversed"
 """The ending of the id of the opposite lanelet, where a lanelet may be used in both directions."""
 
 
-class Bound(NamedTuple):
+class MapBound(NamedTuple):
     """A way of the file as a bound; ``turned``: the direction of travel is not that of the file."""
 
     way: OsmWay
@@ -41,17 +41,17 @@ class Bound(NamedTuple):
         first, last = self.way.nodes[0], self.way.nodes[-1]
         return (last, first) if self.turned else (first, last)
 
-    def reversed(self) -> Bound:
+    def reversed(self) -> MapBound:
         """The bound of a lanelet in the opposite direction."""
-        return Bound(self.way, not self.turned)
+        return MapBound(self.way, not self.turned)
 
 
 class MapLanelet(NamedTuple):
     """A lanelet without its surroundings, and its bounds in the file."""
 
     lanelet: Lanelet
-    left: Bound
-    right: Bound
+    left: MapBound
+    right: MapBound
 
 
 def map_lanelets(file: OsmFile, points: Points, left_out: list[str]) -> dict[str, MapLanelet]:
@@ -112,7 +112,7 @@ def _entry(
     if is_lane(lanelet):
         junction = tags.get("intersection_area", "")
         lanelet = replace(lanelet, limit_mps=lane_tags.speed_limit(tags), junction=junction)
-    return MapLanelet(lanelet, Bound(left, turned[0]), Bound(right, turned[1]))
+    return MapLanelet(lanelet, MapBound(left, turned[0]), MapBound(right, turned[1]))
 
 
 def _reversed(entry: MapLanelet) -> MapLanelet:

@@ -40,7 +40,7 @@ COLOURS: Mapping[str, str] = {
 """SUMO's letters -> CommonRoad's words; ``s`` is red with an arrow that permits turning right."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class NetEdge:
     """An edge; ``function`` is empty for a road, ``type`` is the name in the map's source."""
 
@@ -202,13 +202,18 @@ def read_net(path: Path) -> SumoNet:
 def _add(net: SumoNet, tree: Tree) -> None:
     match tree.name:
         case "edge":
-            function, kind, start, end = map(tree.get, ("function", "type", "from", "to"))
-            parameters = {
-                x.get("key"): x.get("value")
-                for part in (tree, *tree.children)
-                for x in part.all("param")
-            }
-            edge = NetEdge(tree.filled("id"), function, kind, start, end, parameters)
+            edge = NetEdge(
+                id=tree.filled("id"),
+                function=tree.get("function"),
+                type=tree.get("type"),
+                start=tree.get("from"),
+                end=tree.get("to"),
+                parameters={
+                    x.get("key"): x.get("value")
+                    for part in (tree, *tree.children)
+                    for x in part.all("param")
+                },
+            )
             net.edges[edge.id] = edge
             for child in tree.all("lane"):
                 lane = _lane(child, edge)
