@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Floats
 from rulec.recordings.recording import Points
+from rulec.scenario.recorded.borders import Borders
 
 _INSIDE = 1e-3
 """Nearer to a piece's end (a part of its length) a foot is not sure to be the only one."""
@@ -82,9 +83,11 @@ class PieceFans:
 
     def at(self, s: Floats) -> NDArray[intp]:
         """The numbers of the pieces at places (m) along the line."""
-        # Searching is faster in places that lie next to each other
-        pieces: NDArray[intp] = self.columns[7].searchsorted(s, "right") - 1
-        return np.maximum(pieces, 0)
+        return self._borders.before(s)
+
+    @cached_property
+    def _borders(self) -> Borders:
+        return Borders(self.columns[7])
 
 
 def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[intp]]:
