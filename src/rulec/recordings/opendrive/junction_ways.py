@@ -7,7 +7,7 @@ traffic law, only junctions of three or more roads with traffic from different d
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from math import pi
 
@@ -28,12 +28,8 @@ _LIKE = np.radians(30.0)
 class Crossroads:
     """Road -> the crossroads that it leads through; road -> roads with priority over it there."""
 
-    roads: Mapping[str, str]
-    yields_to: Mapping[str, frozenset[str]] = field(default_factory=dict)
-
-    def junction_of(self, road: str) -> str:
-        """The crossroads that a road leads through, or empty."""
-        return self.roads.get(road, "")
+    junction_of: dict[str, str] = field(default_factory=dict)
+    yields_to: dict[str, frozenset[str]] = field(default_factory=dict)
 
 
 def crossroads(content: OpenDrive, links: LaneLinks) -> Crossroads:
@@ -53,16 +49,15 @@ def crossroads(content: OpenDrive, links: LaneLinks) -> Crossroads:
                     arms[after].add(start.piece.road.id)
                 if before:
                     arms[before].add(end.piece.road.id)
-    junction_of: dict[str, str] = {}
-    yields_to: dict[str, frozenset[str]] = {}
+    found = Crossroads()
     for name, roads in within.items():
         headings = [_heading(key) for key in entering[name]]
         if len(arms[name]) >= _ARMS and _differ(headings):
-            junction_of.update(dict.fromkeys(roads, name))
+            found.junction_of.update(dict.fromkeys(roads, name))
             junction = content.junctions.get(name)
             if junction is not None and junction.priorities:
-                yields_to.update(_rights(junction, roads))
-    return Crossroads(junction_of, yields_to)
+                found.yields_to.update(_rights(junction, roads))
+    return found
 
 
 def _heading(key: LaneKey) -> float:

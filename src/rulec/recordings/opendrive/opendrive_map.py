@@ -199,7 +199,7 @@ def _lanelet(whole: _Whole, key: LaneKey, first: frozenset[str] | None) -> Lanel
         left_mark=marks[0],
         right_mark=marks[1],
         stop_line=_stop_line(own),
-        junction=whole.crossroads.junction_of(piece.road.id),
+        junction=whole.crossroads.junction_of.get(piece.road.id, ""),
         first=first,
     )
 
@@ -218,7 +218,7 @@ def _types(whole: _Whole, piece: RoadPiece, lane: Lane) -> Iterator[str]:
         yield "mainCarriageWay"
     if any(x.start <= piece.middle < x.end for x in road.tunnels):
         yield "tunnel"
-    if whole.crossroads.junction_of(road.id):
+    if road.id in whole.crossroads.junction_of:
         yield "intersection"
 
 
