@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TypeVar
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import shapely
@@ -140,6 +140,39 @@ def shares_along(points: Points) -> NDArray[float64]:
     ways = arc_lengths(points)
     parts: NDArray[float64] = ways / ways[-1]
     return parts
+
+
+class Crossing(NamedTuple):
+    """Where two lines of several cross, by their indices, and how far (m) along each that is."""
+
+    first: int
+    second: int
+    first_along: float
+    second_along: float
+
+
+def crossings(lines: Sequence[Points], least_rad: float) -> Iterator[Crossing]:
+    """The pairs of lines that cross, at an angle above ``least_rad``, which is below a right one.
+
+    Ways that meet at a smaller angle run into each other, as where lanes join or part.
+    """
+    strings = [shapely.LineString(line) for line in lines]
+    for pair in shapely.STRtree(strings).query(strings, predicate="crosses").T.tolist():
+        first, second = pair
+        if first < second:
+            meeting = shapely.intersection(strings[first], strings[second])
+            place = shapely.point_on_surface(meeting)
+            along = [float(strings[number].project(place)) for number in pair]
+            turns = [_direction(lines[number], at) for number, at in zip(pair, along, strict=True)]
+            if abs(np.arctan(np.tan(turns[0] - turns[1]))) > least_rad:
+                yield Crossing(first, second, *along)
+
+
+def _direction(line: Points, along: float) -> float:
+    """The direction (rad) of a line at a place along it (m)."""
+    piece = int(arc_lengths(line)[1:-1].searchsorted(along, "right"))
+    x, y = (line[piece + 1] - line[piece]).tolist()
+    return float(np.arctan2(y, x))
 
 
 def places_in(

@@ -11,9 +11,7 @@ from rulec.scenario.recorded.lane_coordinates import kept_off_touched, outline_b
 def test_an_outline_whose_middle_is_not_beside_the_line_has_no_bounds():
     line = SimpleNamespace(
         coordinates=lambda places: np.where(places[:, :1] > 5, np.nan, places),
-        coordinates_of_rows=lambda places, around, reach: np.where(
-            np.isnan(around)[:, None, None], np.nan, places
-        ),
+        coordinates_near=lambda places, around, reach, counts: places.copy(),
     )
     near, far = np.array([(0.0, 1.0), (4.0, 3.0)]), np.array([(6.0, 1.0), (8.0, 3.0)])
     low, high = outline_bounds(

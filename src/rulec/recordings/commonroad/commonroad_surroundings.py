@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Set
+from math import radians
 from typing import NamedTuple
-
-import numpy as np
-import shapely
 
 from rulec.recordings import recording
 from rulec.recordings.encodings.tree import Tree
+from rulec.recordings.polylines import crossings
 
 _COLOURS = frozenset({"red", "yellow", "redYellow", "green", "inactive"})
 _WET = frozenset({"light_rain", "mid_rain", "heavy_rain", "hail"})
@@ -19,7 +18,7 @@ _GROUNDS = frozenset({"wet", "clean", "dirty", "damaged", "snow", "ice", "unknow
 _FALLS = _WET | {"snow"}
 _DAYTIMES = {"night": True, "day": False, "morning": False, "noon": False, "afternoon": False}
 _FAR_M = 1000.0
-_ACUTE = 0.5
+_CROSSING_RAD = radians(30.0)
 _WAYS = tuple(
     f"{word}{way}" for word in ("outgoing", "successors") for way in ("Right", "Straight", "Left")
 )
@@ -67,7 +66,7 @@ def junctions(
     before turning.
     """
     waiting = list(intersections)
-    crossed = _crossed(list(lanelets.values())) if waiting else set()
+    crossed = _crossed(lanelets) if waiting else set()
     inside: dict[str, str] = {}
     for intersection in waiting:
         for start in intersection.starts:
@@ -95,7 +94,7 @@ def leading_away(
         and len(lanelet.predecessors) > 1
         and inside.keys() >= set(lanelet.predecessors)
     ]
-    crossed = _crossed(list(lanelets.values())) if marked else set()
+    crossed = _crossed(lanelets) if marked else set()
     return frozenset(lanelet.id for lanelet in marked) - crossed
 
 
@@ -113,23 +112,11 @@ def _crossed_after(
     return following
 
 
-def _crossed(lanelets: Sequence[recording.Lanelet]) -> set[str]:
-    """The lanelets whose centre lines cross that of another one at 30° or more."""
-    lines = [shapely.LineString(lanelet.centre) for lanelet in lanelets]
-    pairs = shapely.STRtree(lines).query(lines, predicate="crosses").T.tolist()
-    crossed: set[str] = set()
-    for first, second in pairs:
-        place = shapely.point_on_surface(shapely.intersection(lines[first], lines[second]))
-        turned = _direction(lines[first], place) - _direction(lines[second], place)
-        if first < second and abs(np.sin(turned)) > _ACUTE:
-            crossed.update((lanelets[first].id, lanelets[second].id))
-    return crossed
-
-
-def _direction(line: shapely.LineString, place: shapely.Point) -> float:
-    at = line.project(place)
-    before, after = (line.interpolate(max(at + away, 0.0)) for away in (-0.5, 0.5))
-    return float(np.arctan2(after.y - before.y, after.x - before.x))
+def _crossed(lanelets: Mapping[str, recording.Lanelet]) -> set[str]:
+    """The lanelets whose centre lines cross that of another one."""
+    names = list(lanelets)
+    pairs = crossings([lanelet.centre for lanelet in lanelets.values()], _CROSSING_RAD)
+    return {names[number] for pair in pairs for number in (pair.first, pair.second)}
 
 
 def read_weather(location: Tree) -> recording.Weather:

@@ -23,6 +23,7 @@ from rulec.recordings.lane_centres.road_features import (
     NeighbourPart,
     RoadFeatures,
 )
+from rulec.recordings.lanes.lanes_along import led_to
 from rulec.recordings.polylines import far_apart, parallel_line
 from rulec.recordings.recording import Lanelet, ObservedLight, Points
 from rulec.recordings.road_map import crosswalk_with_outline
@@ -90,27 +91,17 @@ def _sound_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
         for name, lane in lanes.items()
     }
     there = {name for name, points in kept.items() if len(points) > 1}
-
-    def reached(name: str, onward: bool, passed: frozenset[str]) -> Iterator[str]:
-        for other in lanes[name].leads_to if onward else lanes[name].follows:
-            if other in there:
-                yield other
-            elif other in lanes and other not in passed:
-                yield from reached(other, onward, passed | {other})
-
+    after = {name: lane.leads_to for name, lane in lanes.items()}
+    before = {name: lane.follows for name, lane in lanes.items()}
     sound = {}
     for name in lanes:
         if name in there:
             lane, points = lanes[name], kept[name]
-            before, after = (
-                tuple(dict.fromkeys(reached(name, onward, frozenset({name}))))
-                for onward in (False, True)
-            )
             sound[name] = replace(
                 lane,
                 centre=lane.centre[points],
-                follows=before,
-                leads_to=after,
+                follows=led_to(before, name, there.__contains__),
+                leads_to=led_to(after, name, there.__contains__),
                 left=_renumbered(lane.left, points, kept),
                 right=_renumbered(lane.right, points, kept),
             )

@@ -6,14 +6,9 @@ from collections import defaultdict
 from collections.abc import Mapping
 
 import numpy as np
-import shapely
 
-from rulec.recordings.lane_centres.road_features import (
-    CentreLane,
-    Places3d,
-    RoadFeatures,
-)
-from rulec.recordings.polylines import arc_lengths
+from rulec.recordings.lane_centres.road_features import CentreLane, RoadFeatures
+from rulec.recordings.polylines import arc_lengths, crossings
 
 CROSSING_RAD = np.radians(30.0)
 """Lanes that meet at a smaller angle (rad) merge or diverge rather than cross."""
@@ -69,28 +64,18 @@ def _stretch(lane: CentreLane, places: list[float], *, from_start: bool) -> Stre
 def _crossed(lanes: Mapping[str, CentreLane]) -> dict[str, list[float]]:
     """The lanes that others cross, with the positions of the crossings along them (m)."""
     cars = [lane for lane in lanes.values() if "bicycleLane" not in lane.types]
-    lines = [shapely.LineString(lane.centre[:, :2]) for lane in cars]
-    if not lines:
-        return {}
-    pairs = shapely.STRtree(lines).query(lines, predicate="crosses").T.tolist()
-    crossings: dict[str, list[float]] = defaultdict(list)
-    for first, second in pairs:
-        if first < second:
-            place = shapely.point_on_surface(shapely.intersection(lines[first], lines[second]))
-            (turn, z), (other_turn, other_z) = (
-                _at(cars[index].centre, place) for index in (first, second)
-            )
-            # Unknown heights do not separate lanes
-            meets = not abs(z - other_z) > APART_M
-            if meets and abs(np.arctan(np.tan(turn - other_turn))) > CROSSING_RAD:
-                for index in (first, second):
-                    crossings[cars[index].id].append(float(lines[index].project(place)))
-    return crossings
+    found: dict[str, list[float]] = defaultdict(list)
+    for pair in crossings([lane.centre[:, :2] for lane in cars], CROSSING_RAD):
+        first, second = cars[pair.first], cars[pair.second]
+        apart_m = _height(first, pair.first_along) - _height(second, pair.second_along)
+        # Unknown heights do not separate lanes
+        if not abs(apart_m) > APART_M:
+            found[first.id].append(pair.first_along)
+            found[second.id].append(pair.second_along)
+    return found
 
 
-def _at(centre: Places3d, place: shapely.Point) -> tuple[float, float]:
-    """The direction (rad) and the height (m) of a centre line at its segment nearest to a place."""
-    away = np.hypot(*(centre[:-1, :2] + np.diff(centre[:, :2], axis=0) / 2 - (place.x, place.y)).T)
-    piece = int(np.argmin(away))
-    x, y = centre[piece + 1, :2] - centre[piece, :2]
-    return float(np.arctan2(y, x)), float(centre[piece, 2])
+def _height(lane: CentreLane, along: float) -> float:
+    """The height (m) of a centre line where the segment at a place along it (m) begins."""
+    piece = int(arc_lengths(lane.centre[:, :2])[1:-1].searchsorted(along, "right"))
+    return float(lane.centre[piece, 2])

@@ -12,8 +12,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import shapely
 
-from rulec.recordings.lanelet2.map_lanelets import REVERSED, MapLanelet, lanes
+from rulec.recordings.lanelet2.map_lanelets import REVERSED
 from rulec.recordings.lanelet2.regulations import LaneRules, Surveyed, regulatory_elements
+from rulec.recordings.recording import Lanelet
 
 _TOWARDS = np.cos(np.radians(120.0))
 _MOST_MET = 1_000_000
@@ -49,31 +50,30 @@ def _ways(survey: Surveyed, names: Iterator[str]) -> frozenset[str]:
     """The named lanelets that lie in the junction, and the successors of the others."""
     ways: set[str] = set()
     for name in names:
-        entry = survey.entries.get(name)
+        entry = survey.lanelets.get(name)
         if entry is not None:
             inside = "intersection" in entry.types or _is_inside(survey, entry)
-            ways.update([name] if inside else survey.topology.successors[name])
+            ways.update([name] if inside else survey.lanelets[name].successors)
     return frozenset(ways)
 
 
-def _is_inside(survey: Surveyed, entry: MapLanelet) -> bool:
+def _is_inside(survey: Surveyed, entry: Lanelet) -> bool:
     """Whether a lanelet without turn information is one of several with a common predecessor."""
-    before = survey.topology.predecessors[entry.id]
-    return any(len(survey.topology.successors[name]) > 1 for name in before)
+    return any(len(survey.lanelets[name].successors) > 1 for name in entry.predecessors)
 
 
 def _before(survey: Surveyed, names: frozenset[str]) -> Iterator[str]:
-    return (x for name in names for x in survey.topology.predecessors[name])
+    return (x for name in names for x in survey.lanelets[name].predecessors)
 
 
 def _come_towards(survey: Surveyed, names: list[str]) -> dict[str, set[str]]:
     """Lanelet -> those that cross or join it and begin in roughly the opposite direction."""
     towards: dict[str, set[str]] = {name: set() for name in names}
-    all_lanes = list(lanes(survey.entries))
+    all_lanes = survey.lanes
     tree = shapely.STRtree([shapely.LineString(entry.centre) for entry in all_lanes])
     count = 0
     for name in names:
-        entry = survey.entries[name]
+        entry = survey.lanelets[name]
         met = tree.query(shapely.LineString(entry.centre), predicate="intersects").tolist()
         count += len(met)
         if count > _MOST_MET:
@@ -86,7 +86,7 @@ def _come_towards(survey: Surveyed, names: list[str]) -> dict[str, set[str]]:
     return towards
 
 
-def _ahead(entry: MapLanelet) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def _ahead(entry: Lanelet) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     step = entry.centre[1] - entry.centre[0]
     ahead: np.ndarray[tuple[int], np.dtype[np.float64]] = step / np.hypot(*step)
     return ahead

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from rulec.diagnostics import first_of
@@ -11,11 +12,11 @@ from rulec.recordings.commonroad.countries import side_in
 from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED
 from rulec.recordings.lanelet2.first_ways import first_ways
 from rulec.recordings.lanelet2.map_frame import places_of
-from rulec.recordings.lanelet2.map_lanelets import MapLanelet, map_lanelets
+from rulec.recordings.lanelet2.map_lanelets import map_lanelets
 from rulec.recordings.lanelet2.osm_file import LANELET2, read_osm
 from rulec.recordings.lanelet2.regulations import LaneRules, Surveyed, regulations, remarks_on
-from rulec.recordings.lanelet2.topology import country_in, nearly_connected, topology
-from rulec.recordings.recording import Lanelet, ObservedLight
+from rulec.recordings.lanelet2.topology import connected, country_in, nearly_connected
+from rulec.recordings.recording import Lanelet, ObservedLight, is_lane
 from rulec.recordings.road_map import RoadMap
 
 _NAMED = 3
@@ -39,17 +40,17 @@ def read_lanelet2(path: Path) -> RoadMap:
     entries = map_lanelets(file, places.points, left_out)
     if not entries:
         raise file.refused("none of its lanelets has a left and a right bound")
-    survey = Surveyed(file, places.points, entries, topology(file, entries))
+    survey = Surveyed(file, places.points, connected(file, entries))
     rules = regulations(survey)
     first = first_ways(survey, rules)
-    country = country_in(entries.values())
+    country = country_in(file, entries)
     lanelets = {
-        name: _lanelet(entry, survey, rules[name], first.get(name))
-        for name, entry in entries.items()
+        name: _regulated(lanelet, rules[name], first.get(name))
+        for name, lanelet in survey.lanelets.items()
     }
     side = side_in(country) or side_by_lanes(lanelets.values())
     remarks = [places.remark, *_left_out(left_out), *remarks_on(rules.values())]
-    remarks += _loose_ends(nearly_connected(entries, survey.topology))
+    remarks += _loose_ends(nearly_connected(lanelets))
     if side is None:
         remarks.append("the map does not give the side of traffic")
     return RoadMap(
@@ -61,33 +62,20 @@ def read_lanelet2(path: Path) -> RoadMap:
     )
 
 
-def _lanelet(
-    entry: MapLanelet, survey: Surveyed, rules: LaneRules, first: frozenset[str] | None
-) -> Lanelet:
-    around = survey.topology
-    own = () if entry.limit_mps is None else (entry.limit_mps,)
-    limits = rules.limits if entry.is_lane and rules.limits else own
+def _regulated(lanelet: Lanelet, rules: LaneRules, first: frozenset[str] | None) -> Lanelet:
+    own = () if lanelet.limit_mps is None else (lanelet.limit_mps,)
+    limits = rules.limits if is_lane(lanelet) and rules.limits else own
     untold = frozenset(rules.untold | ({MAX_SPEED} if rules.unnumbered and not limits else set()))
-    return Lanelet(
-        id=entry.id,
-        left=entry.left,
-        right=entry.right,
-        centre=entry.centre,
-        successors=around.successors[entry.id],
-        predecessors=around.predecessors[entry.id],
-        left_of=around.left_of.get(entry.id),
-        right_of=around.right_of.get(entry.id),
-        types=entry.types | ({"directed"} if rules.directed else frozenset()),
+    return replace(
+        lanelet,
+        types=lanelet.types | ({"directed"} if rules.directed else frozenset()),
         signs=frozenset(rules.signs),
         untold_signs=untold,
         limit_mps=None if MAX_SPEED in untold else min(limits, default=None),
         minimum_mps=None if MIN_SPEED in untold else max(rules.minima, default=None),
         lights=tuple(rules.lights),
         lights_to=_single(rules.lights_to),
-        left_mark=entry.left_mark,
-        right_mark=entry.right_mark,
         stop_line=rules.stop_line,
-        junction=entry.junction,
         first=first,
     )
 

@@ -13,11 +13,9 @@ import numpy as np
 import shapely
 
 from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED, UNKNOWN, effect_name
-from rulec.recordings.lanelet2.map_lanelets import MapLanelet, lanes
 from rulec.recordings.lanelet2.osm_file import OsmFile, OsmRelation
 from rulec.recordings.lanelet2.signs import Plates, element_signs, plates_of, tells_speed
-from rulec.recordings.lanelet2.topology import Topology
-from rulec.recordings.recording import GIVE_WAY_SIGNS, ObservedLight, Points
+from rulec.recordings.recording import GIVE_WAY_SIGNS, Lanelet, ObservedLight, Points, is_lane
 
 MOST_MEMBERS = 1_000
 """The most members of one regulatory element."""
@@ -61,12 +59,24 @@ class LaneRules:
 
 @dataclass(frozen=True, slots=True)
 class Surveyed:
-    """A file's lanelets and their topology; ``points`` are the positions of its nodes."""
+    """A file's connected lanelets; ``points`` are the positions of its nodes."""
 
     file: OsmFile
     points: Points
-    entries: dict[str, MapLanelet]
-    topology: Topology
+    lanelets: dict[str, Lanelet]
+
+    @property
+    def lanes(self) -> list[Lanelet]:
+        """The lanelets that are part of the carriageway."""
+        return [lanelet for lanelet in self.lanelets.values() if is_lane(lanelet)]
+
+    def rules_of(self, lanelet: Lanelet) -> Iterator[str]:
+        """The regulatory elements to which a lanelet refers.
+
+        They apply only in the direction of its bounds.
+        """
+        relation = self.file.relations.get(lanelet.id)
+        return iter(()) if relation is None else relation.refs("regulatory_element", "relation")
 
     def line(self, way: str) -> Points | None:
         """The ends of a line of the file; None if there is no such line."""
@@ -76,14 +86,14 @@ class Surveyed:
 
 def regulations(survey: Surveyed) -> dict[str, LaneRules]:
     """Lanelet -> its rules. Raises RulecError R0610 for an element with too many members."""
-    rules = {name: LaneRules() for name in survey.entries}
+    rules = {name: LaneRules() for name in survey.lanelets}
     for element in regulatory_elements(survey.file):
         if element.tags.get("subtype") == "all_way_stop":
             _all_way_stop(survey, element, rules)
     plates = plates_of(survey.file, survey.points)
     elements = {x.id: _Element(survey, x, plates) for x in regulatory_elements(survey.file)}
-    for entry in survey.entries.values():
-        for name in entry.rules:
+    for entry in survey.lanelets.values():
+        for name in survey.rules_of(entry):
             if name in elements:
                 elements[name].apply(entry, rules)
     for element in regulatory_elements(survey.file):
@@ -130,7 +140,7 @@ class _Element:
         subtype = self.element.tags.get("subtype")
         return not self.is_dynamic and (subtype == "traffic_light" or gives_way)
 
-    def apply(self, entry: MapLanelet, rules: Mapping[str, LaneRules]) -> None:
+    def apply(self, entry: Lanelet, rules: Mapping[str, LaneRules]) -> None:
         """Add the rule to the lanelets to which it applies."""
         kind = self.element.tags.get("subtype", "")
         if self.is_dynamic:
@@ -140,17 +150,17 @@ class _Element:
                 rules[entry.id].untold.add(MAX_SPEED)
             return
         match kind:
-            case "traffic_light" if not entry.is_lane:
+            case "traffic_light" if not is_lane(entry):
                 rules[entry.id].directed = True
             case "traffic_light":
                 line = nearest_line(entry, self.lines)
                 for name, onward in approaches(self.survey, entry, line):
                     rules[name].add_light(self.light, onward)
-                    _draw(self.survey.entries[name], rules[name], line)
+                    _draw(self.survey.lanelets[name], rules[name], line)
             case "traffic_sign" | "speed_limit":
                 self._add_signs(entry, rules)
 
-    def _add_signs(self, entry: MapLanelet, rules: Mapping[str, LaneRules]) -> None:
+    def _add_signs(self, entry: Lanelet, rules: Mapping[str, LaneRules]) -> None:
         own = rules[entry.id]
         for sign in self.signs:
             if sign.untold == MAX_SPEED and sign.name != UNKNOWN:
@@ -169,15 +179,15 @@ class _Element:
             for name, _ in approaches(self.survey, entry, line):
                 rules[name].signs |= names & GIVE_WAY_SIGNS
                 rules[name].untold |= untold
-                _draw(self.survey.entries[name], rules[name], line)
+                _draw(self.survey.lanelets[name], rules[name], line)
 
 
-def _draw(entry: MapLanelet, rules: LaneRules, line: Points | None) -> None:
+def _draw(entry: Lanelet, rules: LaneRules, line: Points | None) -> None:
     if rules.stop_line is None and line is not None:
         rules.stop_line = _own_part(entry, line)
 
 
-def _own_part(entry: MapLanelet, line: Points) -> Points:
+def _own_part(entry: Lanelet, line: Points) -> Points:
     """The part of a line between a lanelet's bounds; the line may cross several lanes."""
     whole = shapely.LineString(line)
     bounds = [shapely.LineString(bound) for bound in (entry.left, entry.right)]
@@ -189,7 +199,7 @@ def _own_part(entry: MapLanelet, line: Points) -> Points:
     return ends if both_met else line
 
 
-def nearest_line(entry: MapLanelet, lines: list[Points]) -> Points | None:
+def nearest_line(entry: Lanelet, lines: list[Points]) -> Points | None:
     """The rule's line nearest to a lanelet's centre line; None if the rule has no line."""
     if len(lines) < 2:
         return lines[0] if lines else None
@@ -197,22 +207,20 @@ def nearest_line(entry: MapLanelet, lines: list[Points]) -> Points | None:
     return min(lines, key=lambda line: middle.distance(shapely.Point(line.mean(axis=0))))
 
 
-def approaches(
-    survey: Surveyed, entry: MapLanelet, line: Points | None
-) -> Iterator[tuple[str, str]]:
+def approaches(survey: Surveyed, entry: Lanelet, line: Points | None) -> Iterator[tuple[str, str]]:
     """The lanelets that end at a rule's line; with the next lanelet if it is only for that way.
 
     This is the lanelet ``entry`` that refers to the rule. It is its predecessors if the line lies
     at its beginning or, within a junction, in its first half or is missing.
     """
-    before = [x for x in survey.topology.predecessors[entry.id] if survey.entries[x].is_lane]
+    before = [x for x in entry.predecessors if is_lane(survey.lanelets[x])]
     if before and _begins_behind(entry, line):
         yield from ((name, entry.id) for name in before)
     else:
         yield entry.id, ""
 
 
-def _begins_behind(entry: MapLanelet, line: Points | None) -> bool:
+def _begins_behind(entry: Lanelet, line: Points | None) -> bool:
     inside = "intersection" in entry.types
     if line is None:
         return inside
@@ -231,10 +239,10 @@ def _all_way_stop(survey: Surveyed, element: OsmRelation, rules: Mapping[str, La
     if len(lines) != len(names):
         lines = [None] * len(names)
     for name, line in zip(names, lines, strict=True):
-        if name in survey.entries:
-            for approach, _ in approaches(survey, survey.entries[name], line):
+        if name in survey.lanelets:
+            for approach, _ in approaches(survey, survey.lanelets[name], line):
                 rules[approach].signs.add("STOP_4_WAY")
-                _draw(survey.entries[approach], rules[approach], line)
+                _draw(survey.lanelets[approach], rules[approach], line)
 
 
 def _right_of_way_signs(
@@ -249,15 +257,15 @@ def _right_of_way_signs(
     untold = {sign.untold for sign in own_element.signs}
     for role, own in (("yield", GIVE_WAY_SIGNS), ("right_of_way", _GOES_FIRST)):
         for name in element.refs(role, "relation"):
-            if name not in survey.entries:
+            if name not in survey.lanelets:
                 continue
-            entry = survey.entries[name]
+            entry = survey.lanelets[name]
             line = nearest_line(entry, lines) if role == "yield" else None
             for approach, _ in approaches(survey, entry, line):
                 if not rules[approach].lights:
                     rules[approach].signs |= signs & own
                     rules[approach].untold |= untold & own
-                    _draw(survey.entries[approach], rules[approach], line)
+                    _draw(survey.lanelets[approach], rules[approach], line)
 
 
 def _drawn_stop_lines(
@@ -267,7 +275,7 @@ def _drawn_stop_lines(
     ways = survey.file.ways.values()
     drawn = (x.id for x in ways if x.tags.get("type") == "stop_line" and x.id not in used)
     lines = [line for line in map(survey.line, drawn) if line is not None]
-    open_lanes = [x for x in lanes(survey.entries) if rules[x.id].stop_line is None]
+    open_lanes = [x for x in survey.lanes if rules[x.id].stop_line is None]
     if not lines or not open_lanes:
         return
     middles = [shapely.LineString(entry.centre) for entry in open_lanes]
@@ -285,13 +293,12 @@ def _drawn_stop_lines(
             if along > max(_AT_END_M, known) and _crosses(middle, along, line):
                 reached[entry.id] = along, line
     for name, (_, line) in reached.items():
-        _draw(survey.entries[name], rules[name], line)
+        _draw(survey.lanelets[name], rules[name], line)
 
 
 def _lines_of_rules(survey: Surveyed, elements: Iterable[_Element]) -> frozenset[str]:
     """The ways that rules have as their lines, for the lanelets that the rules are for."""
-    lanelets = (entry for entry in survey.entries.values() if entry.is_lane)
-    referred = {name for entry in lanelets for name in entry.rules}
+    referred = {name for lane in survey.lanes for name in survey.rules_of(lane)}
     return frozenset(
         way
         for rule in elements

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -15,6 +15,7 @@ import shapely
 from rulec.recordings.commonroad.countries import country_of
 from rulec.recordings.lanelet2.map_lanelets import MapLanelet
 from rulec.recordings.lanelet2.osm_file import OsmFile
+from rulec.recordings.recording import Lanelet, is_lane
 
 MOST_AT_ONE_PLACE = 100
 """The most lanelets that begin, or end, at the same two nodes."""
@@ -23,48 +24,49 @@ NEARLY_M = 0.25
 """Nodes so near each other were probably meant to be one."""
 
 
-@dataclass(frozen=True, slots=True)
-class Topology:
-    """For each lanelet: its successors, its predecessors, and its neighbour on each side."""
+def connected(file: OsmFile, entries: Mapping[str, MapLanelet]) -> dict[str, Lanelet]:
+    """The lanelets with what they lead to and what is beside them.
 
-    successors: Mapping[str, tuple[str, ...]]
-    predecessors: Mapping[str, tuple[str, ...]]
-    left_of: Mapping[str, str]
-    right_of: Mapping[str, str]
-
-
-def topology(file: OsmFile, entries: Mapping[str, MapLanelet]) -> Topology:
-    """The topology of lanelets. Raises RulecError R0610 if too many meet at one place."""
+    Raises RulecError R0610 if too many meet at one place.
+    """
+    places = {
+        name: tuple(zip(entry.left.ends, entry.right.ends, strict=True))
+        for name, entry in entries.items()
+    }
     begin: dict[tuple[int, int], list[str]] = defaultdict(list)
     end: dict[tuple[int, int], list[str]] = defaultdict(list)
-    for entry in entries.values():
-        begin[entry.start].append(entry.id)
-        end[entry.end].append(entry.id)
+    for name, (first, last) in places.items():
+        begin[first].append(name)
+        end[last].append(name)
     for group in (*begin.values(), *end.values()):
         if len(group) > MOST_AT_ONE_PLACE:
             why = f"more than {MOST_AT_ONE_PLACE} lanelets begin or end at the same nodes"
             raise file.refused(f"{why}, `{group[0]}` among them")
-    # Leaves out a lane of length 0, which would be its own successor
-    follow = {x.id: _others(x.id, begin.get(x.end, ())) for x in entries.values()}
-    before = {x.id: _others(x.id, end.get(x.start, ())) for x in entries.values()}
     by_right: dict[tuple[str, bool], str] = {}
     by_left: dict[tuple[str, bool], str] = {}
-    for entry in entries.values():
-        if entry.is_lane:
-            by_right.setdefault(entry.right_bound, entry.id)
-            by_left.setdefault(entry.left_bound, entry.id)
-    lanes = [entry for entry in entries.values() if entry.is_lane]
-    left_of = {x.id: by_right[x.left_bound] for x in lanes if x.left_bound in by_right}
-    right_of = {x.id: by_left[x.right_bound] for x in lanes if x.right_bound in by_left}
-    return Topology(follow, before, left_of, right_of)
+    for name, entry in entries.items():
+        if is_lane(entry.lanelet):
+            by_right.setdefault(entry.right.key, name)
+            by_left.setdefault(entry.left.key, name)
+    return {
+        # Leaves out a lane of length 0, which would be its own successor
+        name: replace(
+            entry.lanelet,
+            successors=_others(name, begin.get(places[name][1], ())),
+            predecessors=_others(name, end.get(places[name][0], ())),
+            left_of=by_right.get(entry.left.key) if is_lane(entry.lanelet) else None,
+            right_of=by_left.get(entry.right.key) if is_lane(entry.lanelet) else None,
+        )
+        for name, entry in entries.items()
+    }
 
 
-def nearly_connected(entries: Mapping[str, MapLanelet], around: Topology) -> list[tuple[str, str]]:
+def nearly_connected(lanelets: Mapping[str, Lanelet]) -> list[tuple[str, str]]:
     """Lanelets that end ``NEARLY_M`` or less from where another begins, but do not lead on to it.
 
     Only pairs of which one leads nowhere, or comes from nowhere: others fork or join elsewhere.
     """
-    lanes = [entry for entry in entries.values() if entry.is_lane]
+    lanes = [lanelet for lanelet in lanelets.values() if is_lane(lanelet)]
     if not lanes:
         return []
     ends, starts = (np.array([[x.left[at], x.right[at]] for x in lanes]) for at in (-1, 0))
@@ -76,8 +78,8 @@ def nearly_connected(entries: Mapping[str, MapLanelet], around: Topology) -> lis
         (own.id, other.id)
         for own, other in pairs
         if own is not other
-        and other.id not in around.successors[own.id]
-        and not (around.successors[own.id] and around.predecessors[other.id])
+        and other.id not in own.successors
+        and not (own.successors and other.predecessors)
     ]
 
 
@@ -85,11 +87,12 @@ def _others(own: str, names: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name != own)
 
 
-def country_in(entries: Iterable[MapLanelet]) -> str:
+def country_in(file: OsmFile, lanelets: Iterable[str]) -> str:
     """The country given by the lanelets; empty if they give none, or several.
 
     Their regions are such as `de` or `us-ca`.
     """
-    regions = {entry.region for entry in entries if entry.region}
+    tags = [file.relations[name].tags for name in lanelets if name in file.relations]
+    regions = {own["region"] for own in tags if own.get("region")}
     countries = {country_of(x[:2]) if x[2:3] in {"", "-"} else "" for x in regions}
     return countries.pop() if len(countries) == 1 else ""

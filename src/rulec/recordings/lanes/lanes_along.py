@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import shapely
@@ -28,6 +28,7 @@ USUAL_WIDTH_M = 3.5
 CLOSEST_M = 0.01
 
 MEETING_M = 0.5
+Key = TypeVar("Key", bound=Hashable)
 _LIKE = np.cos(np.radians(45))
 
 LANE_TYPES = frozenset(
@@ -73,6 +74,31 @@ def unknown_references(lanelet: Lanelet, known: Container[str]) -> Iterator[tupl
         ("lights_to", lanelet.lights_to),
     ):
         yield from ((field, name) for name in names if name not in known)
+
+
+def led_to(
+    direct: Mapping[Key, Iterable[Key]], start: Key, is_there: Callable[[Key], bool]
+) -> tuple[Key, ...]:
+    """What something leads to, past what is not there; ``direct`` are the links of all."""
+    found: dict[Key, None] = {}
+    passed, waiting = {start}, [*direct.get(start, ())][::-1]
+    while waiting:
+        key = waiting.pop()
+        if is_there(key):
+            found[key] = None
+        elif key not in passed:
+            passed.add(key)
+            waiting += [*direct.get(key, ())][::-1]
+    return tuple(found)
+
+
+def reversed_links(direct: Mapping[Key, Iterable[Key]]) -> dict[Key, list[Key]]:
+    """What leads to each thing, in the order of the links."""
+    before: dict[Key, list[Key]] = defaultdict(list)
+    for start, ends in direct.items():
+        for end in ends:
+            before[end].append(start)
+    return before
 
 
 def linked(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:

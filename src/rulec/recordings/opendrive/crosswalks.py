@@ -11,7 +11,7 @@ from rulec.recordings.opendrive.content.elements import MapRoad, RoadObject
 from rulec.recordings.opendrive.lane_furniture import drivable, piece_at
 from rulec.recordings.opendrive.lane_lines import places_beside, span_at
 from rulec.recordings.opendrive.pieces import RoadPiece
-from rulec.recordings.opendrive.plan_view import places_on
+from rulec.recordings.opendrive.plan_view import place_on
 from rulec.recordings.opendrive.posted_signs import Posted
 from rulec.recordings.opendrive.signal_catalogues import CROSSWALK, WALKERS_LIGHTS
 from rulec.recordings.recording import LONGEST_M, Lanelet, Points
@@ -31,7 +31,8 @@ def crosswalks(
     road: MapRoad, pieces: Sequence[RoadPiece], posted: Sequence[Posted]
 ) -> Iterator[Lanelet]:
     """The crossings on a road as lanelets that lead across it."""
-    lights = [x.s for x in posted if x.signal.dynamic and x.signal.type in WALKERS_LIGHTS]
+    signals = [x.signal for x in posted]
+    lights = [x.s for x in signals if x.dynamic and x.type in WALKERS_LIGHTS]
     for number, thing in enumerate(road.objects):
         if is_crosswalk(thing):
             name = f"{road.id}.crosswalk {thing.id or number}"
@@ -75,7 +76,7 @@ def _corners(road: MapRoad, thing: RoadObject) -> Points:
 
 
 def _heading(road: MapRoad, s: float) -> float:
-    return float(places_on(road.geometries, np.array([min(s, road.length)])).heading[0])
+    return place_on(road.geometries, min(s, road.length))[2]
 
 
 def _crosswalk(

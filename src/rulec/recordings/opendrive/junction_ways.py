@@ -7,16 +7,16 @@ traffic law, only junctions of three or more roads with traffic from different d
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from math import pi
 
 import numpy as np
 
 from rulec.recordings.opendrive.content.elements import OpenDrive, RoadJunction
-from rulec.recordings.opendrive.lane_links import LaneKey, LaneLinks
-from rulec.recordings.opendrive.pieces import RoadPiece
-from rulec.recordings.opendrive.plan_view import places_on
+from rulec.recordings.opendrive.lane_links import LaneLinks
+from rulec.recordings.opendrive.pieces import LaneKey
+from rulec.recordings.opendrive.plan_view import place_on
 from rulec.recordings.polylines import wrapped
 
 _ARMS = 3
@@ -28,17 +28,11 @@ _LIKE = np.radians(30.0)
 class Crossroads:
     """Road -> the crossroads that it leads through; road -> roads with priority over it there."""
 
-    roads: Mapping[str, str]
-    yields_to: Mapping[str, frozenset[str]] = field(default_factory=dict)
-
-    def junction_of(self, road: str) -> str:
-        """The crossroads that a road leads through, or empty."""
-        return self.roads.get(road, "")
+    junction_of: dict[str, str] = field(default_factory=dict)
+    yields_to: dict[str, frozenset[str]] = field(default_factory=dict)
 
 
-def crossroads(
-    content: OpenDrive, pieces: Mapping[str, Sequence[RoadPiece]], links: LaneLinks
-) -> Crossroads:
+def crossroads(content: OpenDrive, links: LaneLinks) -> Crossroads:
     """The crossroads of a file."""
     within: dict[str, list[str]] = defaultdict(list)
     for road in content.roads.values():
@@ -48,29 +42,26 @@ def crossroads(
     arms: dict[str, set[str]] = defaultdict(set)
     for start, ends in links.after.items():
         for end in ends:
-            before, after = (content.roads[key.road].junction for key in (start, end))
+            before, after = start.piece.road.junction, end.piece.road.junction
             if before != after:
                 if after:
                     entering[after].append(end)
-                    arms[after].add(start.road)
+                    arms[after].add(start.piece.road.id)
                 if before:
-                    arms[before].add(end.road)
-    junction_of: dict[str, str] = {}
-    yields_to: dict[str, frozenset[str]] = {}
+                    arms[before].add(end.piece.road.id)
+    found = Crossroads()
     for name, roads in within.items():
-        headings = [_heading(pieces, key) for key in entering[name]]
+        headings = [_heading(key) for key in entering[name]]
         if len(arms[name]) >= _ARMS and _differ(headings):
-            junction_of.update(dict.fromkeys(roads, name))
+            found.junction_of.update(dict.fromkeys(roads, name))
             junction = content.junctions.get(name)
             if junction is not None and junction.priorities:
-                yields_to.update(_rights(junction, roads))
-    return Crossroads(junction_of, yields_to)
+                found.yields_to.update(_rights(junction, roads))
+    return found
 
 
-def _heading(pieces: Mapping[str, Sequence[RoadPiece]], key: LaneKey) -> float:
-    piece = pieces[key.road][key.piece]
-    s = np.array([piece.start if key.forward else piece.end])
-    heading = float(places_on(piece.road.geometries, s).heading[0])
+def _heading(key: LaneKey) -> float:
+    *_, heading = place_on(key.piece.road.geometries, key.start)
     return heading if key.forward else heading + pi
 
 

@@ -25,9 +25,9 @@ from rulec.recordings.opendrive.content.elements import (
     RoadObject,
 )
 from rulec.recordings.opendrive.lane_lines import span_at
-from rulec.recordings.opendrive.lane_links import LaneKey, LaneLinks
+from rulec.recordings.opendrive.lane_links import LaneLinks
 from rulec.recordings.opendrive.lane_types import NO_LANE, lane_types
-from rulec.recordings.opendrive.pieces import RoadPiece, directions
+from rulec.recordings.opendrive.pieces import LaneKey, Pieces, RoadPiece
 from rulec.recordings.opendrive.posted_signs import Posted
 from rulec.recordings.opendrive.signal_catalogues import (
     AT_LINE,
@@ -92,8 +92,7 @@ class LaneFurniture:
 
 @dataclass(slots=True)
 class _Street:
-    content: OpenDrive
-    pieces: Mapping[str, Sequence[RoadPiece]]
+    pieces: Pieces
     links: LaneLinks
     by_lane: dict[LaneKey, LaneFurniture] = field(default_factory=dict)
 
@@ -104,14 +103,14 @@ class _Street:
 
 def sign_places(road: MapRoad, posted: Iterable[Posted]) -> list[float]:
     """The values of ``s`` at which signals make something begin or end, where the road is cut."""
-    return [x.s for x in posted if _parts(road, x)]
+    return [x.signal.s for x in posted if _parts(road, x)]
 
 
 def _parts(road: MapRoad, posted: Posted) -> bool:
     if any(HOLDS_ON.keys() & {sign.name, sign.untold} for sign in posted.signs):
         return True
-    left = {"+": road.length - posted.s, "-": posted.s}
-    ahead = left.get(posted.orientation, min(left.values()))
+    left = {"+": road.length - posted.signal.s, "-": posted.signal.s}
+    ahead = left.get(posted.signal.orientation, min(left.values()))
     stands_alone = ahead > AT_JUNCTION_M and not road.junction
     return stands_alone and (bool(posted.signs) or is_light(posted.signal, ()))
 
@@ -119,16 +118,16 @@ def _parts(road: MapRoad, posted: Posted) -> bool:
 def lane_furniture(
     content: OpenDrive,
     posted: Mapping[str, Sequence[Posted]],
-    pieces: Mapping[str, Sequence[RoadPiece]],
+    pieces: Pieces,
     links: LaneLinks,
 ) -> Mapping[LaneKey, LaneFurniture]:
     """The signals along each lane that has any."""
-    street = _Street(content, pieces, links)
+    street = _Street(pieces, links)
     controlled = {signal for signals in content.controllers.values() for signal in signals}
     for road in content.roads.values():
-        for signal in sorted(posted[road.id], key=lambda x: x.s):
+        for signal in sorted(posted[road.id], key=lambda x: x.signal.s):
             _place_signal(street, road, signal, controlled)
-        for backward in sorted(posted[road.id], key=lambda x: -x.s):
+        for backward in sorted(posted[road.id], key=lambda x: -x.signal.s):
             _hold_on(street, road, backward, forward=False)
         for thing in road.objects:
             if is_stop_line_object(thing):
@@ -145,19 +144,19 @@ def _place_signal(
     if not (light or line or signs):
         return
     for key in _posted_lanes(street, road, posted):
-        for entry, way in _entries(street, road, key, posted.s):
+        for entry, way in _entries(street, road, key, posted.signal.s):
             own = street.at(entry)
             if light:
                 own.lit = True
                 if way is not None:
                     own.lit_to[way] = None
             elif line:
-                own.stop_line = key, posted.s
+                own.stop_line = key, posted.signal.s
             for sign in signs:
                 own.add(sign)
         for sign in signs:
             if (sign.untold or sign.name) in PRIORITY_SIGNS and not road.junction:
-                for onward in _onward(street, key, posted.s):
+                for onward in _onward(street, key, posted.signal.s):
                     street.at(onward).add(sign)
 
 
@@ -171,14 +170,14 @@ def _hold_on(street: _Street, road: MapRoad, posted: Posted, *, forward: bool) -
     if not signs:
         return
     for key in _posted_lanes(street, road, posted):
-        for onward in _onward(street, key, posted.s) if key.forward == forward else ():
+        for onward in _onward(street, key, posted.signal.s) if key.forward == forward else ():
             for sign in signs:
                 street.at(onward).hold(sign)
 
 
 def _posted_lanes(street: _Street, road: MapRoad, posted: Posted) -> list[LaneKey]:
-    piece = piece_at(street.pieces[road.id], posted.s)
-    return _lanes_at(piece, posted.orientation, posted.lanes)
+    piece = piece_at(street.pieces[road.id], posted.signal.s)
+    return _lanes_at(piece, posted.signal.orientation, posted.signal.lanes)
 
 
 def _lanes_at(
@@ -202,8 +201,8 @@ def drivable(piece: RoadPiece) -> Iterator[LaneKey]:
     for lane in piece.section.lanes.values():
         types = lane_types(piece.section, lane, piece.middle)
         if lane.id != 0 and lane.type not in NO_LANE and not NO_LANES.intersection(types):
-            for forward in directions(piece.road, lane):
-                yield LaneKey(piece.road.id, piece.number, lane.id, forward)
+            for forward in piece.directions(lane.id):
+                yield LaneKey(piece, lane.id, forward)
 
 
 def piece_at(pieces: Sequence[RoadPiece], s: float) -> RoadPiece:
@@ -214,13 +213,10 @@ def piece_at(pieces: Sequence[RoadPiece], s: float) -> RoadPiece:
 
 def _onward(street: _Street, key: LaneKey, s: float) -> list[LaneKey]:
     """The lanes from ``s`` on to the end of the road, as long as each has only one successor."""
-    chain = _chain(street, key)
-    pieces = street.pieces[key.road]
-    middles = [pieces[x.piece].middle for x in chain]
     return [
         x
-        for x, middle in zip(chain, middles, strict=True)
-        if (middle >= s - _HAIR_M if key.forward else middle <= s + _HAIR_M)
+        for x in _chain(street, key)
+        if (x.piece.middle >= s - _HAIR_M if key.forward else x.piece.middle <= s + _HAIR_M)
     ]
 
 
@@ -229,7 +225,7 @@ def _chain(street: _Street, key: LaneKey, *, back: bool = False) -> list[LaneKey
     links = street.links.before if back else street.links.after
     chain, seen = [key], {key}
     while True:
-        following = [x for x in links.get(chain[-1], ()) if x.road == key.road]
+        following = [x for x in links.get(chain[-1], ()) if x.piece.road is key.piece.road]
         if len(following) != 1 or following[0] in seen:
             return chain
         chain += following
@@ -246,14 +242,13 @@ def _entries(
             yield entry, first
         return
     chain = _chain(street, key)
-    last, pieces = chain[-1], street.pieces[road.id]
-    end = pieces[last.piece].end if key.forward else pieces[last.piece].start
-    if abs(end - s) > AT_JUNCTION_M:
+    last = chain[-1]
+    if abs(last.back.start - s) > AT_JUNCTION_M:
         # It stands away from junctions, where the road is cut
         passed = [
             x
             for x in (*reversed(_chain(street, key, back=True)), *chain[1:])
-            if (pieces[x.piece].middle < s if key.forward else pieces[x.piece].middle > s)
+            if (x.piece.middle < s if key.forward else x.piece.middle > s)
         ]
         yield passed[-1] if passed else key, None
         return
@@ -265,10 +260,9 @@ def _before_junction(street: _Street, last: LaneKey) -> LaneKey:
     key, way = last, 0.0
     while True:
         following = street.links.after.get(key, ())
-        if len(following) != 1 or street.content.roads[following[0].road].junction:
+        if len(following) != 1 or following[0].piece.road.junction:
             break
-        piece = street.pieces[following[0].road][following[0].piece]
-        way += piece.end - piece.start
+        way += following[0].piece.end - following[0].piece.start
         if way > AT_JUNCTION_M or following[0] == last:
             return last
         key = following[0]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,17 +23,17 @@ from rulec.recordings.opendrive.lane_furniture import (
     sign_places,
 )
 from rulec.recordings.opendrive.lane_lines import Lines, lane_borders, places_beside, span_at
-from rulec.recordings.opendrive.lane_links import LaneKey, LaneLinks, lane_links
-from rulec.recordings.opendrive.lane_marks import mark_beside
+from rulec.recordings.opendrive.lane_links import LaneLinks, lane_links
 from rulec.recordings.opendrive.lane_types import (
     LANE_TYPES,
     NO_LANE,
     RAMPS,
     lane_types,
     limit_at,
+    mark_beside,
     road_types,
 )
-from rulec.recordings.opendrive.pieces import RoadPiece, directions, neighbour, pieces_of
+from rulec.recordings.opendrive.pieces import LaneKey, Pieces, RoadPiece, pieces_of
 from rulec.recordings.opendrive.posted_signs import posted_on, sign_remarks
 from rulec.recordings.opendrive.signal_catalogues import country_named
 from rulec.recordings.opendrive.turning_speeds import without_turning_speeds
@@ -70,8 +70,7 @@ _NAMED = 5
 class _Whole:
     """What is known of all lanes of a file; ``borders`` has only lanes that become lanelets."""
 
-    pieces: Mapping[str, Sequence[RoadPiece]]
-    borders: Mapping[tuple[str, int, int], Lines]
+    borders: Mapping[tuple[RoadPiece, int], Lines]
     links: LaneLinks
     furniture: Mapping[LaneKey, LaneFurniture]
     crossroads: Crossroads
@@ -79,23 +78,13 @@ class _Whole:
 
     def is_there(self, key: LaneKey) -> bool:
         """Whether a lane has a lanelet."""
-        piece = self.pieces[key.road][key.piece]
-        lane = piece.section.lanes.get(key.lane)
-        there = (key.road, key.piece, key.lane) in self.borders
-        return there and lane is not None and key.forward in directions(piece.road, lane)
-
-    def id_of(self, key: LaneKey) -> str:
-        """The id of a lane's lanelet: road, piece and lane, with ``.r`` for its other direction."""
-        piece = self.pieces[key.road][key.piece]
-        usual, *_ = directions(piece.road, piece.section.lanes[key.lane])
-        return f"{key.road}.{key.piece}.{key.lane}" + ("" if key.forward == usual else ".r")
+        return (key.piece, key.lane) in self.borders and key.is_driven
 
     def lane_keys(self) -> Iterator[LaneKey]:
         """The lanes that have a lanelet."""
-        for road, number, lane in self.borders:
-            piece = self.pieces[road][number]
-            for forward in directions(piece.road, piece.section.lanes[lane]):
-                yield LaneKey(road, number, lane, forward)
+        for piece, lane in self.borders:
+            for forward in piece.directions(lane):
+                yield LaneKey(piece, lane, forward)
 
 
 def read_opendrive_map(path: Path) -> RoadMap:
@@ -111,11 +100,10 @@ def read_opendrive_map(path: Path) -> RoadMap:
     }
     links = lane_links(content, pieces)
     whole = _Whole(
-        pieces=pieces,
         borders=_borders(path, pieces),
         links=links,
         furniture=lane_furniture(content, posted, pieces, links),
-        crossroads=crossroads(content, pieces, links),
+        crossroads=crossroads(content, links),
         has_ramps=any(
             lane.type in RAMPS
             for road in content.roads.values()
@@ -123,7 +111,7 @@ def read_opendrive_map(path: Path) -> RoadMap:
             for lane in section.lanes.values()
         ),
     )
-    within = {whole.id_of(key) for key in whole.lane_keys() if content.roads[key.road].junction}
+    within = {key.name for key in whole.lane_keys() if key.piece.road.junction}
     drawn, n_redrawn = _redrawn_to_linked_lanes({x.id: x for x in _lanelets(whole)}, within)
     lanelets, slow_turns = without_turning_speeds(drawn, within)
     for road in content.roads.values():
@@ -141,10 +129,8 @@ def read_opendrive_map(path: Path) -> RoadMap:
     )
 
 
-def _borders(
-    path: Path, pieces: Mapping[str, Sequence[RoadPiece]]
-) -> dict[tuple[str, int, int], Lines]:
-    borders: dict[tuple[str, int, int], Lines] = {}
+def _borders(path: Path, pieces: Pieces) -> dict[tuple[RoadPiece, int], Lines]:
+    borders: dict[tuple[RoadPiece, int], Lines] = {}
     count = 0
     for road_pieces in pieces.values():
         for piece in road_pieces:
@@ -165,7 +151,7 @@ def _borders(
                     why = f"a lane of the road `{short(piece.road.id)}` is longer than"
                     why = f"{why} {LONGEST_M / 1000:g} km"
                     raise OPENDRIVE.refused(path, why, piece.road.line)
-                borders[piece.road.id, piece.number, lane] = lines
+                borders[piece, lane] = lines
             if count > MOST_PLACES:
                 why = f"its lanes wind so much that they need over {MOST_PLACES:,} points"
                 raise OPENDRIVE.refused(path, why, piece.road.line)
@@ -175,23 +161,18 @@ def _borders(
 def _lanelets(whole: _Whole) -> Iterator[Lanelet]:
     of_road: dict[str, set[str]] = defaultdict(set)
     for key in whole.lane_keys():
-        of_road[key.road].add(whole.id_of(key))
+        of_road[key.piece.road.id].add(key.name)
     for key in whole.lane_keys():
-        roads = whole.crossroads.yields_to.get(key.road)
-        lanelet = _lanelet(whole, key)
-        if roads is not None:
-            first = frozenset(name for road in roads for name in of_road[road])
-            lanelet = replace(lanelet, first=first)
-        yield lanelet
+        roads = whole.crossroads.yields_to.get(key.piece.road.id)
+        first = None if roads is None else {name for road in roads for name in of_road[road]}
+        yield _lanelet(whole, key, None if first is None else frozenset(first))
 
 
-def _lanelet(whole: _Whole, key: LaneKey) -> Lanelet:
-    piece = whole.pieces[key.road][key.piece]
-    lane = piece.section.lanes[key.lane]
-    low, high = whole.borders[key.road, key.piece, key.lane]
+def _lanelet(whole: _Whole, key: LaneKey, first: frozenset[str] | None) -> Lanelet:
+    piece, lane = key.piece, key.piece.section.lanes[key.lane]
+    low, high = whole.borders[piece, key.lane]
     right, left = (low, high) if key.forward else (high[::-1], low[::-1])
     own = whole.furniture.get(key) or LaneFurniture()
-    junction = whole.crossroads.junction_of(key.road)
     marks = [
         mark_beside(piece.section, key.lane, piece.middle, left=side == key.forward)
         for side in (True, False)
@@ -200,36 +181,32 @@ def _lanelet(whole: _Whole, key: LaneKey) -> Lanelet:
     # The lane's own limit comes before those of signs
     untold = own.untold - (own.signs & REGULATING) - ({MAX_SPEED} if has_own else set())
     return Lanelet(
-        id=whole.id_of(key),
+        id=key.name,
         left=left,
         right=right,
         centre=(left + right) / 2,
         successors=_named(whole, whole.links.after.get(key, ())),
         predecessors=_named(whole, whole.links.before.get(key, ())),
-        left_of=_beside(whole, key, left=True),
-        right_of=_beside(whole, key, left=False),
+        left_of=next(iter(_named(whole, [key.beside(left=True)])), None),
+        right_of=next(iter(_named(whole, [key.beside(left=False)])), None),
         types=frozenset(_types(whole, piece, lane)),
         signs=frozenset(own.signs),
         untold_signs=frozenset(untold),
         limit_mps=None if MAX_SPEED in untold else _limit(piece, lane, own),
         minimum_mps=None if MIN_SPEED in untold else own.minimum_mps,
         lights=(UNSEEN,) if own.lit else (),
-        lights_to={whole.id_of(way): UNSEEN for way in own.lit_to if whole.is_there(way)},
+        lights_to=dict.fromkeys(_named(whole, own.lit_to), UNSEEN),
         left_mark=marks[0],
         right_mark=marks[1],
-        stop_line=_stop_line(whole, own),
-        junction=junction,
+        stop_line=_stop_line(own),
+        junction=whole.crossroads.junction_of.get(piece.road.id, ""),
+        first=first,
     )
 
 
-def _named(whole: _Whole, keys: Sequence[LaneKey]) -> tuple[str, ...]:
-    return tuple([whole.id_of(key) for key in keys if whole.is_there(key)])
-
-
-def _beside(whole: _Whole, key: LaneKey, *, left: bool) -> str | None:
-    """The lanelet beside a lane, if it has the same direction."""
-    other = key._replace(lane=neighbour(key.lane, left=left == key.forward))
-    return whole.id_of(other) if whole.is_there(other) else None
+def _named(whole: _Whole, keys: Iterable[LaneKey]) -> tuple[str, ...]:
+    """The ids of those of some lanes that have a lanelet."""
+    return tuple([key.name for key in keys if whole.is_there(key)])
 
 
 def _types(whole: _Whole, piece: RoadPiece, lane: Lane) -> Iterator[str]:
@@ -241,7 +218,7 @@ def _types(whole: _Whole, piece: RoadPiece, lane: Lane) -> Iterator[str]:
         yield "mainCarriageWay"
     if any(x.start <= piece.middle < x.end for x in road.tunnels):
         yield "tunnel"
-    if whole.crossroads.junction_of(road.id):
+    if road.id in whole.crossroads.junction_of:
         yield "intersection"
 
 
@@ -254,14 +231,13 @@ def _limit(piece: RoadPiece, lane: Lane, own: LaneFurniture) -> float | None:
     return kind.limit_mps if limit is None and kind is not None else limit
 
 
-def _stop_line(whole: _Whole, own: LaneFurniture) -> Points | None:
+def _stop_line(own: LaneFurniture) -> Points | None:
     if own.stop_line is None:
         return None
     key, s = own.stop_line
-    piece = whole.pieces[key.road][key.piece]
-    low, high = span_at(piece, key.lane, s)
+    low, high = span_at(key.piece, key.lane, s)
     ends = (high, low) if key.forward else (low, high)
-    return places_beside(piece.road, [(s, t) for t in ends])
+    return places_beside(key.piece.road, [(s, t) for t in ends])
 
 
 def _side(content: OpenDrive, lanelets: Mapping[str, Lanelet]) -> Side | None:

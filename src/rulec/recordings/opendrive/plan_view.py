@@ -49,6 +49,12 @@ def places_on(geometries: Sequence[Geometry], s: Floats) -> Places:
     return result
 
 
+def place_on(geometries: Sequence[Geometry], s: float) -> tuple[float, float, float]:
+    """The point (m) and the direction (rad) of a reference line at ``s``."""
+    x, y, heading = (float(values[0]) for values in places_on(geometries, np.array([s])))
+    return x, y, heading
+
+
 def _in_own_frame(piece: Geometry, way: Floats) -> tuple[Floats, Floats, Floats]:
     """Points and directions at ``way`` (m) in a piece that starts at 0, 0 along the first axis."""
     match piece.shape:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from itertools import product
 from typing import NamedTuple
 
@@ -23,12 +24,7 @@ from rulec.recordings.commonroad.traffic_signs import (
     with_plates,
 )
 from rulec.recordings.encodings.file_values import short
-from rulec.recordings.opendrive.content.elements import (
-    OpenDrive,
-    Orientation,
-    RoadSignal,
-    SignalSpeed,
-)
+from rulec.recordings.opendrive.content.elements import OpenDrive, RoadSignal, SignalSpeed
 from rulec.recordings.opendrive.signal_catalogues import (
     LEAST_SPEED_END,
     NO_SIGN,
@@ -59,15 +55,12 @@ _NAMED = 5
 
 
 class Posted(NamedTuple):
-    """A road's own signal or a referenced one, and the place and lanes where it applies.
+    """A road's own signal, or a referenced one with the place and lanes where it applies.
 
     ``signs`` are those that it shows. If it hides a number or a condition, they are ``untold``.
     """
 
     signal: RoadSignal
-    s: float
-    orientation: Orientation
-    lanes: tuple[tuple[int, int], ...] | None
     signs: tuple[Sign, ...]
 
 
@@ -83,12 +76,12 @@ def posted_on(content: OpenDrive) -> dict[str, list[Posted]]:
         for signal in road.signals:
             plates = *_below(signal, posts), *linked.get(signal.id, ())
             signs[signal.id] = _shown(signal, plates)
-            own[road.id].append(
-                Posted(signal, signal.s, signal.orientation, signal.lanes, signs[signal.id])
-            )
+            own[road.id].append(Posted(signal, signs[signal.id]))
     for road in content.roads.values():
         own[road.id] += [
-            Posted(by_id[x.id], x.s, x.orientation, x.lanes, signs[x.id])
+            Posted(
+                replace(by_id[x.id], s=x.s, orientation=x.orientation, lanes=x.lanes), signs[x.id]
+            )
             for x in road.references
             if x.id in by_id
         ]

@@ -7,11 +7,12 @@ before it still applies, unless the net allows more: a lower one is the speed of
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 import numpy as np
 
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
+from rulec.recordings.lanes.lanes_along import led_to, reversed_links
 from rulec.recordings.polylines import interpolated, parallel_line, without_repeats
 from rulec.recordings.recording import (
     BUSES_ONLY,
@@ -20,6 +21,7 @@ from rulec.recordings.recording import (
     TAXIS_TOO,
     Lanelet,
     LaneMark,
+    Light,
     Points,
 )
 from rulec.recordings.sumo.lane_kinds import lane_kinds
@@ -60,10 +62,7 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     # In the order of the file, which decides that of predecessors
     there = {key: shape for key, shape in shapes.items() if len(shape) > 1}.keys()
     after = _successors(net.connections, there, set(net.lanes))
-    before: dict[str, list[str]] = defaultdict(list)
-    for start, ends in after.items():
-        for end in ends:
-            before[end].append(start)
+    before = reversed_links(after)
     origins = _origins(net, before)
     limits = {
         key: _unrounded(max(road.speed, net.lanes[key].speed)) for key, road in origins.items()
@@ -71,7 +70,11 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     driven = {key for key in origins if _permitted(net.lanes[key]) - _WALKERS - _RIDERS - _RAILS}
     kinds = lane_kinds(net, driven)
     junctions = _junctions(net)
-    lights, ways = net.lane_lights(step_s), net.way_lights(step_s)
+    ways: dict[str, dict[str, Light]] = defaultdict(dict)
+    lights: dict[str, dict[Light, None]] = defaultdict(dict)
+    for connection, light in net.lights(step_s):
+        lights[connection.start][light] = None
+        ways[connection.start][connection.via or connection.end] = light
     rights, signs = rights_of_ways(net), signs_of_lanes(net)
     # Leaves out the later lanes of ways through a junction that have several lanes
     entering = [x for x in net.connections if not x.start.startswith(":")]
@@ -99,7 +102,7 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
             left=left,
             right=right,
             centre=centre,
-            successors=tuple(after[lane.id]),
+            successors=after[lane.id],
             predecessors=tuple(before[lane.id]),
             left_of=_neighbour(lane, towards_left, there),
             right_of=_neighbour(lane, -towards_left, there),
@@ -143,22 +146,14 @@ def _resampled(points: Points, count: int) -> Points:
 
 def _successors(
     connections: list[NetConnection], there: Set[str], known: set[str]
-) -> dict[str, list[str]]:
+) -> dict[str, tuple[str, ...]]:
     """Lane -> next lanes, skipping those of length 0."""
     direct: dict[str, list[str]] = defaultdict(list)
     for connection in connections:
         direct[connection.start].append(
             connection.via if connection.via in known else connection.end
         )
-
-    def reached(start: str, passed: tuple[str, ...] = ()) -> Iterator[str]:
-        for end in direct.get(start, ()):
-            if end in there:
-                yield end
-            elif end not in passed:
-                yield from reached(end, (*passed, end))
-
-    return defaultdict(list, {key: list(dict.fromkeys(reached(key))) for key in there})
+    return {key: led_to(direct, key, there.__contains__) for key in there}
 
 
 def _neighbour(lane: NetLane, step: int, there: Set[str]) -> str | None:
@@ -168,7 +163,7 @@ def _neighbour(lane: NetLane, step: int, there: Set[str]) -> str | None:
     return beside_it if beside_it in there else None
 
 
-def _origins(net: SumoNet, before: Mapping[str, list[str]]) -> dict[str, NetLane]:
+def _origins(net: SumoNet, before: Mapping[str, Sequence[str]]) -> dict[str, NetLane]:
     """Lane -> the lane of the road that leads to it, for lanes on which vehicles drive."""
     origins = {}
     for lane in net.lanes.values():

@@ -12,9 +12,10 @@ from pathlib import Path
 from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.safe_xml import root_of, scan
 from rulec.recordings.encodings.tree import Tree
+from rulec.recordings.encodings.xml_tree import scan_trees
 from rulec.recordings.sumo.fcd import demand_beside, named_beside
 from rulec.recordings.sumo.fcd_content import FcdHead
-from rulec.recordings.sumo.net import ProgrammeReader, SignalProgramme
+from rulec.recordings.sumo.net import SignalProgramme, read_programme
 
 STATES = XmlFormat(
     "SUMO's states of traffic lights",
@@ -54,20 +55,23 @@ def programmes_beside(path: Path, head: FcdHead) -> Mapping[str, SignalProgramme
         file = named_beside(path, name)
         if file is None:
             return None
-        lights, switched = ProgrammeReader(), set[str]()
-
-        def begin(
-            element: Tree, lights: ProgrammeReader = lights, switched: set[str] = switched
-        ) -> None:
-            lights.begin(element)
-            if element.name == "wautJunction":
-                switched.add(element.get("junctionID"))
-
-        scan(file, replace(_ADDITIONAL, root=root_of(file, _ADDITIONAL)), begin)
-        lights.finish()
-        replaced.update({name: programmes[-1] for name, programmes in lights.programmes.items()})
-        replaced.update(dict.fromkeys(switched))
+        replaced.update(_replaced_by(file))
     return replaced
+
+
+def _replaced_by(file: Path) -> Mapping[str, SignalProgramme | None]:
+    replaced: dict[str, SignalProgramme | None] = {}
+    switched: dict[str, None] = {}
+
+    def add(tree: Tree) -> None:
+        if tree.name == "tlLogic":
+            replaced[tree.filled("id")] = read_programme(tree)
+        elif tree.name == "wautJunction":
+            switched[tree.get("junctionID")] = None
+
+    form = replace(_ADDITIONAL, root=root_of(file, _ADDITIONAL))
+    scan_trees(file, form, lambda _: None, add)
+    return {**replaced, **switched}
 
 
 def read_light_states(path: Path) -> Mapping[str, SignalProgramme]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import ceil
@@ -12,8 +11,8 @@ import numpy as np
 
 from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.file_values import short
-from rulec.recordings.encodings.safe_xml import scan
 from rulec.recordings.encodings.tree import Tree
+from rulec.recordings.encodings.xml_tree import scan_trees
 from rulec.recordings.recording import LONGEST_M, Light, Points, Side
 from rulec.recordings.sumo.fcd_content import is_true
 
@@ -41,7 +40,7 @@ COLOURS: Mapping[str, str] = {
 """SUMO's letters -> CommonRoad's words; ``s`` is red with an arrow that permits turning right."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class NetEdge:
     """An edge; ``function`` is empty for a road, ``type`` is the name in the map's source."""
 
@@ -50,7 +49,7 @@ class NetEdge:
     type: str
     start: str
     end: str
-    parameters: dict[str, str] = field(default_factory=dict)
+    parameters: Mapping[str, str]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +71,7 @@ class NetLane:
     """Whether changing lanes is forbidden to the left, and to the right."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class NetJunction:
     """A junction: its type, the first lane of each way through it, and the priorities of the ways.
 
@@ -83,8 +82,8 @@ class NetJunction:
     id: str
     type: str
     ways: tuple[str, ...]
-    first: list[str] = field(default_factory=list)
-    foes: list[str] = field(default_factory=list)
+    first: tuple[str, ...]
+    foes: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -153,26 +152,12 @@ class SumoNet:
     roundabouts: set[str] = field(default_factory=set)
     programmes: dict[str, list[SignalProgramme | None]] = field(default_factory=dict)
 
-    def lane_lights(self, step_s: float) -> dict[str, list[Light]]:
-        """Lane -> the different lights at its end, over all ways on.
+    def lights(self, step_s: float) -> Iterator[tuple[NetConnection, Light]]:
+        """The connections with a light, and its programme in time steps.
 
         Lights that react to traffic or have several programmes are left out: their state is
         unknown.
         """
-        lights: dict[str, list[Light]] = defaultdict(list)
-        for connection, light in self._lights(step_s):
-            if light not in lights[connection.start]:
-                lights[connection.start].append(light)
-        return lights
-
-    def way_lights(self, step_s: float) -> dict[str, dict[str, Light]]:
-        """Lane -> next lane -> the light for that way."""
-        lights: dict[str, dict[str, Light]] = defaultdict(dict)
-        for connection, light in self._lights(step_s):
-            lights[connection.start][connection.via or connection.end] = light
-        return lights
-
-    def _lights(self, step_s: float) -> Iterator[tuple[NetConnection, Light]]:
         for connection in self.connections:
             programmes = self.programmes.get(connection.light, [])
             if len(programmes) == 1 and programmes[0] is not None:
@@ -193,80 +178,65 @@ class SumoNet:
         return [name for name, known in self.programmes.items() if len(known) > 1 or None in known]
 
 
-class ProgrammeReader:
-    """Reads the programmes of lights, `tlLogic` with its phases, element by element."""
-
-    def __init__(self) -> None:
-        self.programmes: dict[str, list[SignalProgramme | None]] = {}
-        self._light: tuple[str, float, bool] | None = None
-        self._phases: list[tuple[float, str]] = []
-
-    def begin(self, element: Tree) -> None:
-        """Handle the beginning of any element."""
-        if element.name == "phase":
-            if self._light is not None:
-                self._phases.append((element.positive("duration"), element.filled("state")))
-            return
-        self.finish()
-        if element.name == "tlLogic":
-            fixed = element.attributes.get("type", "static") == "static"
-            self._light = element.filled("id"), element.number("offset", 0.0), fixed
-
-    def finish(self) -> None:
-        """Store the programme read last; to be called at the end of the file."""
-        if self._light is not None:
-            name, offset, fixed = self._light
-            programme = SignalProgramme(offset, tuple(self._phases))
-            known = self.programmes.setdefault(name, [])
-            known.append(programme if fixed and self._phases else None)
-            self._phases.clear()
-            self._light = None
+def read_programme(tree: Tree) -> SignalProgramme | None:
+    """The programme in an element `tlLogic`; None if it reacts to traffic, or has no phase."""
+    tree.filled("id")
+    offset, fixed = tree.number("offset", 0.0), tree.attributes.get("type", "static") == "static"
+    phases = tuple([(x.positive("duration"), x.filled("state")) for x in tree.all("phase")])
+    return SignalProgramme(offset, phases) if fixed and phases else None
 
 
 def read_net(path: Path) -> SumoNet:
     """The net in a file. Raises RulecError R0610 for another kind, R0701 if it cannot be read."""
-    lights = ProgrammeReader()
-    net = SumoNet(programmes=lights.programmes)
-    edge: NetEdge | None = None
-    junction: NetJunction | None = None
+    net = SumoNet()
 
-    def begin(element: Tree) -> None:
-        nonlocal edge, junction
-        lights.begin(element)
-        match element.name:
-            case "net":
-                net.side = "left" if is_true(element.get("lefthand")) else "right"
-            case "edge":
-                function, kind, start, end = map(element.get, ("function", "type", "from", "to"))
-                edge = NetEdge(element.filled("id"), function, kind, start, end)
-                net.edges[edge.id] = edge
-            case "lane":
-                if edge is None:
-                    raise element.wrong("a `lane` is in no `edge`")
-                lane = _lane(element, edge)
-                if lane.id in net.lanes:
-                    raise element.wrong(f"there are two lanes `{short(lane.id)}`")
-                net.lanes[lane.id] = lane
-            case "param" if edge is not None:
-                edge.parameters[element.get("key")] = element.get("value")
-            case "junction":
-                edge = None
-                ways = tuple(element.get("intLanes").split())
-                junction = NetJunction(element.filled("id"), element.get("type"), ways)
-                net.junctions[junction.id] = junction
-            case "request" if junction is not None:
-                junction.first.append(element.get("response"))
-                junction.foes.append(element.get("foes"))
-            case "roundabout":
-                net.roundabouts.update(element.get("edges").split())
-            case "connection":
-                net.connections.append(_connection(element))
+    def root(tree: Tree) -> None:
+        net.side = "left" if is_true(tree.get("lefthand")) else "right"
 
-    scan(path, NET, begin)
-    lights.finish()
+    scan_trees(path, NET, root, lambda tree: _add(net, tree))
     if not net.lanes:
         raise NET.refused(path, "it has no lane")
     return net
+
+
+def _add(net: SumoNet, tree: Tree) -> None:
+    match tree.name:
+        case "edge":
+            edge = NetEdge(
+                id=tree.filled("id"),
+                function=tree.get("function"),
+                type=tree.get("type"),
+                start=tree.get("from"),
+                end=tree.get("to"),
+                parameters={
+                    x.get("key"): x.get("value")
+                    for part in (tree, *tree.children)
+                    for x in part.all("param")
+                },
+            )
+            net.edges[edge.id] = edge
+            for child in tree.all("lane"):
+                lane = _lane(child, edge)
+                if lane.id in net.lanes:
+                    raise child.wrong(f"there are two lanes `{short(lane.id)}`")
+                net.lanes[lane.id] = lane
+        case "lane":
+            raise tree.wrong("a `lane` is in no `edge`")
+        case "tlLogic":
+            programme = read_programme(tree)
+            net.programmes.setdefault(tree.get("id"), []).append(programme)
+        case "junction":
+            net.junctions[tree.filled("id")] = NetJunction(
+                id=tree.get("id"),
+                type=tree.get("type"),
+                ways=tuple(tree.get("intLanes").split()),
+                first=tuple([x.get("response") for x in tree.all("request")]),
+                foes=tuple([x.get("foes") for x in tree.all("request")]),
+            )
+        case "roundabout":
+            net.roundabouts.update(tree.get("edges").split())
+        case "connection":
+            net.connections.append(_connection(tree))
 
 
 def _lane(element: Tree, edge: NetEdge) -> NetLane:

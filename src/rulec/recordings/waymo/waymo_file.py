@@ -14,8 +14,7 @@ from rulec.recordings.recording import Recording
 from rulec.recordings.scenarionet.data_sets import data_set
 from rulec.recordings.scenarionet.scenario_dictionary import KeyedValue
 from rulec.recordings.scenarionet.scenarionet_file import scenario_recording
-from rulec.recordings.waymo.waymo_content import scenario_content
-from rulec.recordings.waymo.waymo_tables import SCENARIO_ID
+from rulec.recordings.waymo.waymo_content import SCENARIO_ID, scenario_content
 
 WAYMO = BinaryFormat(
     "scenarios of Waymo's Open Motion Dataset",

@@ -7,17 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from math import inf, radians
 from typing import TypeAlias
 
-import numpy as np
-import shapely
-
+from rulec.recordings.polylines import crossings
 from rulec.recordings.recording import GIVE_WAY_SIGNS, Lanelet, Recording, is_lane
-from rulec.scenario.recorded.route import directions_beside, lanelet_length, lanes_beside
+from rulec.scenario.recorded.route import lanelet_length, lanes_beside
 
 _WAY_M = 30.0
 """Longest way through a junction that only joins others; roads that lead there are longer."""
 
 _CROSSING_ANGLE = radians(30.0)
-"""Ways that meet at a smaller angle run into each other, as where lanes join or part."""
 
 
 def marks_junctions(recording: Recording) -> bool:
@@ -138,17 +135,6 @@ def _is_level_crossing(lanelet: Lanelet) -> bool:
 
 
 def _crossing_pairs(lanes: Sequence[Lanelet]) -> Iterator[tuple[Lanelet, Lanelet]]:
-    """The pairs of lanelets whose middle lines cross at an angle above ``_CROSSING_ANGLE``."""
-    lines = [shapely.LineString(lanelet.centre) for lanelet in lanes]
-    firsts, seconds = shapely.STRtree(lines).query(lines, predicate="crosses")
-    for first, second in zip(firsts.tolist(), seconds.tolist(), strict=True):
-        meeting = shapely.intersection(lines[first], lines[second])
-        if first < second and _angle(lanes[first], lanes[second], meeting) > _CROSSING_ANGLE:
-            yield lanes[first], lanes[second]
-
-
-def _angle(first: Lanelet, second: Lanelet, meeting: shapely.Geometry) -> float:
-    """The angle (rad) between two lanelets where they meet, at most a right angle."""
-    place = np.array([shapely.point_on_surface(meeting)])
-    turn = directions_beside(first, place)[0] - directions_beside(second, place)[0]
-    return float(abs(np.arctan(np.tan(turn))))
+    """The pairs of lanelets whose middle lines cross."""
+    for pair in crossings([lanelet.centre for lanelet in lanes], _CROSSING_ANGLE):
+        yield lanes[pair.first], lanes[pair.second]

@@ -44,7 +44,7 @@ _MARGIN_M = 5.0
 _FAR_M = 50.0
 _ABOUT_M = 20.0
 _HAIR_M = 0.01
-_AT_ONCE = 1 << 10
+_AT_ONCE = 1 << 11
 """Outlines processed per batch, so that intermediate arrays stay in the processor's cache."""
 
 _Beside = Sequence["Lanelet | None"]
@@ -305,28 +305,15 @@ def outline_bounds(
         if expected
         else line.coordinates(outlines.middles)
     )
-    around = middles[:, 0]
-    if not outlines.regular:
-        around, reach = (x.repeat(outlines.counts) for x in (around, outlines.reach))
-        feet = line.coordinates_near(outlines.corners, around, reach)
-        feet[np.isnan(around)] = np.nan
-        return outlines.least_and_greatest(_with_across(feet, across))
-    corners = outlines.corners.reshape(len(around), -1, 2)
-    rows = line.coordinates_of_rows(corners, around, outlines.reach)
     parts = []
-    for begin in range(0, len(rows), _AT_ONCE):
-        # Corner-major, so that minimum and maximum run over contiguous outlines
-        own = rows[begin : begin + _AT_ONCE].swapaxes(0, 1)
-        values = _with_across(own.reshape(-1, 2), across)
-        by_corner = values.reshape(len(values), len(own), -1)
-        parts.append((np.minimum.reduce(by_corner, axis=1), np.maximum.reduce(by_corner, axis=1)))
-    least, greatest = (np.concatenate(bounds, axis=1).T for bounds in zip(*parts, strict=True))
+    for first in range(0, len(middles), _AT_ONCE):
+        own = slice(first, first + _AT_ONCE)
+        part, around = outlines.part(own), middles[own, 0]
+        feet = line.coordinates_near(part.corners, around, outlines.reach[own], part.counts)
+        feet[np.isnan(around).repeat(part.counts)] = np.nan
+        parts.append(part.least_and_greatest(np.concatenate((feet.T, across(feet).T))))
+    least, greatest = (np.concatenate(bounds) for bounds in zip(*parts, strict=True))
     return least, greatest
-
-
-def _with_across(feet: Points, across: Callable[[Points], Points]) -> Floats:
-    """Coordinates of places and what a function computes from them; one row per coordinate."""
-    return np.concatenate((feet.T, across(feet).T))
 
 
 def kept_off_touched(low: Floats, high: Floats, straight: Floats) -> tuple[Floats, Floats]:

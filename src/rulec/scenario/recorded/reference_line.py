@@ -29,7 +29,7 @@ from rulec.recordings.polylines import (
 from rulec.recordings.recording import Points
 from rulec.scenario.recorded.line_fans import LineFans, line_fans
 from rulec.scenario.recorded.line_surroundings import LineSurroundings, line_surroundings
-from rulec.scenario.recorded.sure_feet import MANY, PieceFans, sure_feet, sure_feet_near
+from rulec.scenario.recorded.sure_feet import MANY, PieceFans, sure_feet
 from rulec.trace.plain_arrays import distinct
 
 BEYOND_M = 2000.0
@@ -96,33 +96,25 @@ class ReferenceLine:
 
     def coordinates(self, places: Points) -> Points:
         """Frenet coordinates ``s`` and ``d`` of places, one row each; NaN without a foot."""
-        coordinates, sure = sure_feet(self.piece_fans, places)
-        left = (~sure).nonzero()[0]
+        coordinates, pieces = sure_feet(self.piece_fans, places)
+        left = (pieces < 0).nonzero()[0]
         low = np.zeros(len(left), dtype=intp)
         coordinates[left] = self._nearest(places[left], low, low + len(self.arc) - 1)
         return coordinates
 
-    def coordinates_near(self, places: Points, around: Floats, reach: Floats) -> Points:
-        """Frenet coordinates of places, with feet within ``reach`` of ``around`` (``s``)."""
-        low, high = self._piece(around - reach), self._piece(around + reach)
+    def coordinates_near(
+        self, places: Points, around: Floats, reach: Floats, counts: NDArray[intp] | int = 1
+    ) -> Points:
+        """Frenet coordinates of places, with feet within ``reach`` of ``around`` (``s``).
+
+        ``counts``: to how many places, one after the other, each ``around`` and ``reach`` applies.
+        """
+        low, high = (self._piece(s).repeat(counts) for s in (around - reach, around + reach))
         if len(places) < MANY:
             return self._nearest(places, low, high)
-        coordinates, sure = sure_feet(self.piece_fans, places)
-        pieces = self._piece(coordinates[:, 0])
-        left = (~sure | (pieces < low) | (pieces > high)).nonzero()[0]
+        coordinates, pieces = sure_feet(self.piece_fans, places)
+        left = ((pieces < low) | (pieces > high)).nonzero()[0]
         coordinates[left] = self._nearest(places[left], low[left], high[left])
-        return coordinates
-
-    def coordinates_of_rows(self, places: Points, around: Floats, reach: Floats) -> Points:
-        """Like ``coordinates_near`` for rows of equally many places, with one ``around`` per row.
-
-        Axes: row, place, and x and y or ``s`` and ``d``. A row whose ``around`` is NaN gets NaN.
-        """
-        coordinates, sure = sure_feet_near(self.piece_fans, places, around, reach)
-        rows, columns = np.divmod((~sure).ravel().nonzero()[0], places.shape[1])
-        rows, columns = (x[~np.isnan(around[rows])] for x in (rows, columns))
-        own = around[rows], reach[rows]
-        coordinates[rows, columns] = self.coordinates_near(places[rows, columns], *own)
         return coordinates
 
     def surroundings(self, near_m: float, beyond_m: float) -> LineSurroundings:

@@ -29,7 +29,7 @@ _AT_ONCE = 1 << 13
 MANY = 256
 """For fewer places, trying all pieces is faster than computing ``PieceFans.alone``."""
 
-_WIDEST, _MOST_PIECES = 64, 512
+_MOST_PIECES = 512
 _HAIR_M = 1e-6
 _ROUNDS = 2
 
@@ -54,18 +54,6 @@ class PieceFans:
         with np.errstate(divide="ignore", over="ignore"):
             room: Floats = lengths / (2 * change) - lengths
         return room
-
-    @cached_property
-    def _rooms(self) -> dict[int, Floats]:
-        return {}
-
-    def room_around(self, width: int) -> Floats:
-        """For each piece the least ``room`` among the pieces up to ``width`` away from it."""
-        if width not in self._rooms:
-            padded = np.pad(self.room, width, constant_values=np.inf)
-            windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1)
-            self._rooms[width] = windows.min(axis=1)
-        return self._rooms[width]
 
     @cached_property
     def alone(self) -> Floats:
@@ -102,61 +90,13 @@ class PieceFans:
         return Borders(self.columns[7])
 
 
-def sure_feet_near(
-    fans: PieceFans, places: Points, around: Floats, reach: Floats
-) -> tuple[Points, NDArray[bool_]]:
-    """Frenet coordinates of the places whose only foot within ``reach`` of ``around`` is found.
+def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[intp]]:
+    """Frenet coordinates of the places whose only foot on the line is found, and their pieces.
 
-    ``places`` are in rows of equal length (axes: row, place, x and y), ``around`` and ``reach``
-    have one value per row. The second result is the mask of the places found.
+    The number of a piece is -1 for other places.
     """
     coordinates = np.full(places.shape, np.nan)
-    sure = np.zeros(places.shape[:2], dtype=bool)
-    step = max(1, _AT_ONCE // places.shape[1])
-    for begin in range(0, len(places), step):
-        part = slice(begin, begin + step)
-        near = _Near(places[part], around[part], reach[part])
-        _find(fans, near, coordinates[part], sure[part])
-    return coordinates, sure
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class _Near:
-    """Rows of places, with the approximate ``s`` (m) of the feet of each row."""
-
-    places: Points
-    around: Floats
-    reach: Floats
-
-
-def _find(fans: PieceFans, near: _Near, coordinates: Points, sure: NDArray[bool_]) -> None:
-    """Fill in ``coordinates`` and ``sure`` for the places of a few rows whose feet are sure."""
-    least, most = (fans.at(near.around + reach) for reach in (-near.reach, near.reach))
-    width = int((most - least).max())
-    if width > _WIDEST:
-        return
-    middle = fans.at(near.around)
-    # Axes place, row: rows are many and have few places each, so the long axis comes last
-    x, y = np.ascontiguousarray(near.places.T)
-    ux, uy, x0, y0, _, _, _, arc = fans.columns.take(middle, axis=1)
-    dx, dy = x - x0, y - y0
-    along = dx * ux + dy * uy
-    # Upper bound on the distance to the start of a piece in question, apart from its length
-    off = np.abs(ux * dy - uy * dx) + np.abs(along - (near.around - arc))
-    safe = off < fans.room_around(width)[middle] - near.reach
-    pieces = fans.at(arc + along)
-    safe &= (pieces >= least) & (pieces <= most)
-    s, d, inside = _on(fans, x, y, pieces)
-    safe &= inside
-    np.copyto(coordinates[..., 0].T, s, where=safe)
-    np.copyto(coordinates[..., 1].T, d, where=safe)
-    sure[:] = safe.T
-
-
-def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
-    """Frenet coordinates of the places whose only foot on the line is found, and their mask."""
-    coordinates = np.full(places.shape, np.nan)
-    sure = np.zeros(len(places), dtype=bool)
+    found = np.full(len(places), -1)
     # The first and last pieces are the straight extensions, so these are the line's own corners
     corners = fans.columns[2:4, 1:].T
     middle, room = corners.mean(axis=0), float(fans.room.min())
@@ -165,7 +105,7 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
     length = float(np.hypot(*chord))
     # No guess for a line that ends where it begins: it has no chord
     if not length or (farthest >= room and len(places) < MANY):
-        return coordinates, sure
+        return coordinates, found
     ux, uy = (chord / length).tolist()
     first = float(fans.columns[7, 1])
     for begin in range(0, len(places), _AT_ONCE):
@@ -179,8 +119,8 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
         safe = inside & (near | (np.abs(d) < fans.alone.take(pieces)))
         np.copyto(coordinates[part, 0], s, where=safe)
         np.copyto(coordinates[part, 1], d, where=safe)
-        sure[part] = safe
-    return coordinates, sure
+        np.copyto(found[part], pieces, where=safe)
+    return coordinates, found
 
 
 def _on(

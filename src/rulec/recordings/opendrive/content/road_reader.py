@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import pairwise
 from math import pi
+from operator import attrgetter
+from typing import Any, TypeVar
 
 from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.tree import Tree
@@ -39,6 +41,8 @@ _MOST_TURNED = 200 * pi
 
 _HAIR_M = 0.01
 
+_Record = TypeVar("_Record")
+
 
 def read_road(tree: Tree) -> MapRoad:
     """The road in an element. Raises RulecError R0610."""
@@ -63,7 +67,7 @@ def read_road(tree: Tree) -> MapRoad:
         line=tree.place,
         predecessor=predecessor,
         successor=successor,
-        types=tuple(sorted(map(_type, tree.all("type")), key=lambda kind: kind.start)),
+        types=_by_start(map(_type, tree.all("type"))),
         geometries=_geometries(tree.child("planView")),
         offsets=_cubics(lanes, "laneOffset", "s"),
         sections=tuple(_sections(lanes, road_length)),
@@ -93,8 +97,12 @@ def _stretch(tree: Tree) -> RoadStretch:
     return RoadStretch(start, start + length(tree, "length"))
 
 
+def _by_start(records: Iterable[_Record]) -> tuple[_Record, ...]:
+    return tuple(sorted(records, key=attrgetter("start")))
+
+
 def _cubics(tree: Tree, kind: str, key: str) -> tuple[Cubic, ...]:
-    return tuple(sorted((cubic(x, key) for x in tree.all(kind)), key=lambda x: x.start))
+    return _by_start(cubic(x, key) for x in tree.all(kind))
 
 
 def _geometries(tree: Tree) -> tuple[Geometry, ...]:
@@ -178,15 +186,11 @@ def _carry_over(before: dict[int, Lane], row: dict[int, Lane], way: float) -> No
         if any(lane * side > 0 for lane in row):
             continue
         for lane in [lane for lane in before.values() if lane.id * side > 0]:
-            row[lane.id] = replace(
-                lane,
-                widths=tuple([replace(x, start=x.start - way) for x in lane.widths]),
-                borders=tuple([replace(x, start=x.start - way) for x in lane.borders]),
-                marks=tuple([replace(x, start=x.start - way) for x in lane.marks]),
-                speeds=tuple([replace(x, start=x.start - way) for x in lane.speeds]),
-                access=tuple([replace(x, start=x.start - way) for x in lane.access]),
-                predecessors=(lane.id,),
-            )
+            moved: dict[str, Any] = {
+                name: tuple([replace(x, start=x.start - way) for x in getattr(lane, name)])
+                for name in ("widths", "borders", "marks", "speeds", "access")
+            }
+            row[lane.id] = replace(lane, predecessors=(lane.id,), **moved)
             before[lane.id] = replace(lane, successors=(lane.id,))
 
 
@@ -202,10 +206,8 @@ def _lane(tree: Tree) -> Lane:
         direction=text(tree, "direction"),
         widths=_cubics(tree, "width", "sOffset"),
         borders=_cubics(tree, "border", "sOffset"),
-        marks=tuple(sorted(map(_mark, tree.all("roadMark")), key=lambda mark: mark.start)),
-        speeds=tuple(
-            sorted((speed(x, "sOffset") for x in tree.all("speed")), key=lambda x: x.start)
-        ),
+        marks=_by_start(map(_mark, tree.all("roadMark"))),
+        speeds=_by_start(speed(x, "sOffset") for x in tree.all("speed")),
         access=tuple([_access(x) for x in tree.all("access")]),
         predecessors=predecessors,
         successors=successors,
