@@ -6,7 +6,7 @@ Feather's second version is Arrow's file format for interprocess communication.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +16,6 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.arrow.arrow_messages import OddMessageError, batch_size
-from rulec.recordings.encodings.arrow.nested_columns import (
-    Nested,
-    NestedColumn,
-    NestedKind,
-    OddColumnError,
-    nested_column,
-)
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.file_values import LARGEST, short
 from rulec.recordings.encodings.table_columns import Texts
@@ -46,12 +39,16 @@ _STREAM_MARK = b"\xff\xff\xff\xff"
 _HEADER_BYTES = 8
 
 
+class OddColumnError(Exception):
+    """A column is not of its kind; ``row`` is the first wrong one, counted from 1."""
+
+    def __init__(self, why: str, row: int | None = None) -> None:
+        self.why, self.row = why, row
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class ArrowTable:
-    """Columns of a file by name, without missing values; numbers are finite and below ``LARGEST``.
-
-    ``metadata``: the metadata of its schema.
-    """
+    """Columns of a file by name, none with missing values; numbers are below ``LARGEST``."""
 
     path: Path
     form: FileFormat
@@ -59,8 +56,6 @@ class ArrowTable:
     numbers: Mapping[str, NDArray[float64]]
     whole: Mapping[str, NDArray[int64]]
     texts: Mapping[str, Texts]
-    nested: Mapping[str, NestedColumn] = field(default_factory=dict)
-    metadata: Mapping[bytes, bytes] = field(default_factory=dict)
 
     def refused(self, row: int, why: str, expected: str = "") -> RulecError:
         """The error (R0610) for a row, counted from 1."""
@@ -74,13 +69,12 @@ class Wanted:
     numbers: tuple[str, ...] = ()
     whole: tuple[str, ...] = ()
     texts: tuple[str, ...] = ()
-    nested: tuple[Nested, ...] = ()
     optional: frozenset[str] = frozenset()
 
     @property
     def names(self) -> tuple[str, ...]:
         """The names of all columns to read."""
-        return (*self.numbers, *self.whole, *self.texts, *(column.name for column in self.nested))
+        return (*self.numbers, *self.whole, *self.texts)
 
 
 def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
@@ -97,23 +91,16 @@ def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
         table = table.combine_chunks()
         columns: dict[str, Any] = {name: table.column(name) for name in table.column_names}
 
-        def read(names: Iterable[str], kind: NestedKind) -> dict[str, Any]:
-            there = (name for name in names if name in columns)
-            return {name: _READERS[kind](name, columns[name], arrow) for name in there}
+        def read(names: Iterable[str], reader: Callable[[str, Any, Any], Any]) -> dict[str, Any]:
+            return {name: reader(name, columns[name], arrow) for name in names if name in columns}
 
         return ArrowTable(
             path=path,
             form=form,
             rows=table.num_rows,
-            numbers=read(wanted.numbers, "number"),
-            whole=read(wanted.whole, "whole"),
-            texts=read(wanted.texts, "text"),
-            nested={
-                column.name: nested_column(column, columns[column.name], arrow, _READERS)
-                for column in wanted.nested
-                if column.name in columns
-            },
-            metadata=table.schema.metadata or {},
+            numbers=read(wanted.numbers, _numbers),
+            whole=read(wanted.whole, _whole),
+            texts=read(wanted.texts, _texts),
         )
     except OddMessageError:
         raise form.refused(path, "it is damaged (its sizes contradict each other)") from None
@@ -195,16 +182,18 @@ def _present(names: Iterable[str], path: Path, form: FileFormat, wanted: Wanted)
     return [name for name in wanted.names if name in known]
 
 
-def _gap(name: str, column: Any) -> None:
+def _check(name: str, column: Any, is_of_kind: bool) -> None:
+    """Refuse a column of another type, or with a missing value."""
+    if not is_of_kind:
+        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
     if column.null_count:
         row = int(np.argmax(column.is_null().to_numpy())) + 1
         raise OddColumnError(f"`{name}` has no value", row)
 
 
 def _numbers(name: str, column: Any, arrow: Any) -> NDArray[float64]:
-    if not (arrow.types.is_floating(column.type) or arrow.types.is_integer(column.type)):
-        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
-    _gap(name, column)
+    types = arrow.types
+    _check(name, column, types.is_floating(column.type) or types.is_integer(column.type))
     values = np.asarray(column.to_numpy(), dtype=float)
     odd = ~(np.abs(values) < LARGEST)
     if odd.any():
@@ -214,18 +203,14 @@ def _numbers(name: str, column: Any, arrow: Any) -> NDArray[float64]:
 
 
 def _whole(name: str, column: Any, arrow: Any) -> NDArray[int64]:
-    if not arrow.types.is_integer(column.type):
-        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
-    _gap(name, column)
+    _check(name, column, arrow.types.is_integer(column.type))
     values: NDArray[int64] = column.cast(arrow.int64()).to_numpy()
     return values
 
 
 def _texts(name: str, column: Any, arrow: Any) -> Texts:
     kind = column.type.value_type if arrow.types.is_dictionary(column.type) else column.type
-    if not (arrow.types.is_string(kind) or arrow.types.is_large_string(kind)):
-        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
-    _gap(name, column)
+    _check(name, column, arrow.types.is_string(kind) or arrow.types.is_large_string(kind))
     codes, known = arrays.codes_in(arrays.whole_array(column))
     if (codes < 0).any():
         raise OddColumnError(f"`{name}` has no value")
@@ -233,19 +218,3 @@ def _texts(name: str, column: Any, arrow: Any) -> Texts:
     if max(map(len, values), default=0) > LONGEST_TEXT:
         raise OddColumnError(f"a text in `{name}` is longer than {LONGEST_TEXT} characters")
     return Texts(codes.astype(int64), values)
-
-
-def _bytes(name: str, column: Any, arrow: Any) -> list[bytes]:
-    if not (arrow.types.is_binary(column.type) or arrow.types.is_large_binary(column.type)):
-        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
-    _gap(name, column)
-    values: list[bytes] = column.to_pylist()
-    return values
-
-
-_READERS: Mapping[NestedKind, Callable[[str, Any, Any], Any]] = {
-    "number": _numbers,
-    "whole": _whole,
-    "text": _texts,
-    "bytes": _bytes,
-}
