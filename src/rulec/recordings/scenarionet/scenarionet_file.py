@@ -69,7 +69,8 @@ class _BoxTrack(NamedTuple):
 
     def first(self) -> _BoxTrack:
         """The track reduced to its first box."""
-        return _BoxTrack(*(column[:1] for column in self))
+        rows = self.centres[:1], self.headings[:1], self.velocities[:1], self.sizes[:1]
+        return _BoxTrack(self.steps[:1], *rows)
 
 
 def read_scenarionet(path: Path) -> Recording:
