@@ -14,10 +14,12 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.batch_verify import verify_items
 from rulec.monitoring.verdict import NotJudged
 from rulec.trace.formats.alike_lines import LineBlock
-from rulec.trace.formats.byte_columns import PADDING, column_words, read_values
-from rulec.trace.formats.byte_words import (
+from rulec.trace.formats.byte_columns import (
+    PADDING,
     begin_with,
+    column_words,
     end_as_before,
+    read_values,
     short_decimals,
     words_for,
     words_from,
