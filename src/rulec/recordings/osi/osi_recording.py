@@ -304,25 +304,21 @@ def _remarks(content: TraceContent, grid: TimeGrid) -> Iterator[str]:
 
 
 def _network_remarks(network: LaneNetwork) -> Iterator[str]:
-    if network.assumed:
-        yield (
-            "lanes without boundaries are assumed to have the usual width: "
-            + _some(network.assumed)
-        )
-    if network.undirected:
-        yield (
-            "traffic is assumed to follow the points of lanes without a direction: "
-            + _some(network.undirected)
-        )
-    if network.across:
-        yield (
-            "ways across areas of intersections are assumed to be curves between lanes: "
-            + _some(network.across)
-        )
-    if network.shapeless:
-        yield f"lanes with neither a middle nor boundaries are left out: {_some(network.shapeless)}"
-    if network.apart:
-        yield f"lanes that are declared connected but do not meet: {_some(network.apart)}"
+    for names, what in (
+        (network.assumed, "lanes without boundaries are assumed to have the usual width"),
+        (
+            network.undirected,
+            "traffic is assumed to follow the points of lanes without a direction",
+        ),
+        (
+            network.across,
+            "ways across areas of intersections are assumed to be curves between lanes",
+        ),
+        (network.shapeless, "lanes with neither a middle nor boundaries are left out"),
+        (network.apart, "lanes that are declared connected but do not meet"),
+    ):
+        if names:
+            yield f"{what}: {_some(names)}"
 
 
 def _some(names: list[str]) -> str:
