@@ -6,7 +6,7 @@ https://github.com/waymo-research/waymo-open-dataset/tree/master/src/waymo_open_
 
 from __future__ import annotations
 
-from rulec.recordings.encodings.wire_tables import tables_of
+from rulec.recordings.encodings.wire_format import tables_of
 
 # The words are ScenarioNet's, for what is known of them there: a flashing light has no colour, and
 # of a line that is broken on one side only, the side is unknown.
