@@ -1,7 +1,7 @@
 """Columns of values read from given positions in JSON text.
 
-A text's bytes are taken eight at a time as integers, which NumPy compares and computes at once. The
-first byte of a word is the lowest.
+A text's bytes are taken eight at a time as integers, which NumPy compares at once. The first byte
+of a word is the lowest.
 """
 
 from __future__ import annotations
@@ -19,14 +19,6 @@ Words = NDArray[np.uint64]
 
 BYTES: int = 8
 """Bytes per word."""
-
-_POWERS_OF_TEN = 10.0 ** np.arange(BYTES + 1)
-_ZEROS, _POINTS, _SIXES, _ONES, _HIGH, _LOW = (
-    np.uint64(byte * 0x0101_0101_0101_0101) for byte in (0x30, 0x2E, 0x06, 0x01, 0xF0, 0x7F)
-)
-_ALL = ~np.uint64(0)
-_POINT_AT = np.uint64(0x80) << np.arange(0, 64, 8, dtype=np.uint64)
-"""Words in which only the highest bit of one byte is set, from the first byte to the last."""
 
 
 def words_for(width: int) -> int:
@@ -65,47 +57,6 @@ def _word_of(written: bytes) -> Words:
     return np.frombuffer(written + bytes(-len(written) % BYTES), "<u8")
 
 
-def short_decimals(
-    words: NDArray[np.uint64], lengths: Places
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """The values of unsigned numbers of one to eight bytes, and a mask of those valid in JSON.
-
-    Each word begins with its number. All digits are combined at once: first neighbours, then pairs,
-    then fours.
-    """
-    unused = (BYTES * (BYTES - lengths)).astype(np.uint64)
-    first = words & np.uint64(0xFF)
-    # Shift the numbers to the end of their words, after zeros.
-    words = (words << unused) | (_ZEROS & ~(_ALL << unused))
-    # Set the highest bit of each byte that is a decimal point.
-    others = words ^ _POINTS
-    points = ~(((others & _LOW) + _LOW) | others | _LOW)
-    has_point = points != 0
-    behind = np.where(has_point, BYTES - 1 - np.searchsorted(_POINT_AT, points), 0)
-    before = lengths - behind - has_point
-    # Move the digits before the point by one byte, over the point.
-    lower = (points >> np.uint64(7)) - np.uint64(1)
-    higher = ~((points << np.uint64(1)) - np.uint64(1))
-    moved = (words & higher) | ((words & lower) << np.uint64(8)) | np.uint64(0x30)
-    digits = np.where(has_point, moved, words)
-    is_read = (
-        (digits & _HIGH == _ZEROS)
-        & ((digits + _SIXES) & _HIGH == _ZEROS)
-        & (points & (points - np.uint64(1)) == 0)
-        & (before > 0)
-        & (behind >= has_point)
-        & ~((first == 0x30) & (before > 1))
-    )
-    digits -= _ZEROS
-    digits = digits * np.uint64(10) + (digits >> np.uint64(8))
-    pairs = np.uint64(0x0000_00FF_0000_00FF)
-    digits = (digits & pairs) * np.uint64(100 + (1_000_000 << 32)) + (
-        (digits >> np.uint64(16)) & pairs
-    ) * np.uint64(1 + (10_000 << 32))
-    mantissa = (digits >> np.uint64(32)).astype(np.int64)
-    return mantissa / _POWERS_OF_TEN.take(behind), is_read
-
-
 PADDING = 64
 """The text needs this many bytes before the first value and after the last."""
 
@@ -113,6 +64,7 @@ _MOST_DIGITS = 15
 """Decimals of at most this many digits are exact floats, and their digits fit a float's 53 bits."""
 
 _LONGEST_NUMBER = 17
+_TENS = 10 ** np.arange(_LONGEST_NUMBER, dtype=np.int64)
 _LONGEST_WRITTEN = 24
 """Python writes no number with more characters."""
 
@@ -171,10 +123,7 @@ def _numbers(text: Bytes, starts: Places, ends: Places, words: Words) -> ReadCol
     """Numbers with few digits, converted together and exactly; others one by one."""
     lengths = ends - starts
     is_negative = begin_with(words, b"-")
-    if lengths.max() <= BYTES and not is_negative.any():
-        numbers, is_read = short_decimals(words[:, 0], lengths)
-    else:
-        numbers, is_read = _decimals(text, starts, ends, is_negative)
+    numbers, is_read = _decimals(text, starts, ends, is_negative)
     for place in np.flatnonzero(~is_read & (lengths <= _LONGEST_WRITTEN)).tolist():
         number = _own(bytes(text[starts[place] : ends[place]]))
         if number is not None:
@@ -190,18 +139,23 @@ def _decimals(
     # One row per byte position, aligned at the end, so that digits of one weight are adjacent.
     rows = bytes_from(text, ends - width, width).view(np.uint8).reshape(-1, width)
     characters = np.ascontiguousarray(rows.T)
-    digits = characters - np.uint8(_ZERO)
     is_inside = lengths > np.arange(width - 1, -1, -1)[:, None]
+    digits = characters - np.uint8(_ZERO)
     is_digit = (digits < 10) & is_inside
     is_point = (characters == _POINT) & is_inside
+    digits *= is_digit
     mantissa = np.zeros(len(starts), dtype=np.int64)
-    behind = np.zeros(len(starts), dtype=np.int64)
-    is_behind = np.zeros(len(starts), dtype=bool)
+    behind = np.zeros(len(starts), dtype=np.int8)
     for byte in range(width):
-        mantissa = np.where(is_digit[byte], mantissa * 10 + digits[byte], mantissa)
-        behind += is_behind
-        is_behind |= is_point[byte]
-    n_digits, n_points = is_digit.sum(axis=0), is_point.sum(axis=0)
+        mantissa *= 10
+        mantissa += digits[byte]
+        behind += is_point[byte] * np.int8(width - 1 - byte)
+    n_digits, n_points = (
+        np.add.reduce(flags, axis=0, dtype=np.int8) for flags in (is_digit, is_point)
+    )
+    # The point counted as a digit of 0: what is before it moves by one.
+    tens = _TENS.take(behind, mode="clip")
+    mantissa -= mantissa // (10 * tens) * (9 * tens) * (n_points > 0)
     before = n_digits - behind
     leads_with_zero = (text[starts + is_negative] == _ZERO) & (before > 1)
     is_read = (
@@ -213,7 +167,7 @@ def _decimals(
         & ~leads_with_zero
         & ~(is_negative & (mantissa == 0))
     )
-    numbers = mantissa / 10.0 ** behind.clip(max=_MOST_DIGITS)
+    numbers = mantissa / tens
     np.negative(numbers, out=numbers, where=is_negative)
     return numbers, is_read
 
