@@ -109,7 +109,7 @@ def read_values(text: Bytes, starts: Places, ends: Places, words: Words) -> Read
         return _texts(text, starts, ends, words)
     if first in (_TRUE[0], _FALSE[0]):
         return _truths(ends - starts, words)
-    return _numbers(text, starts, ends, words)
+    return _numbers(text, starts, ends)
 
 
 def _truths(lengths: Places, words: Words) -> ReadColumn:
@@ -119,10 +119,10 @@ def _truths(lengths: Places, words: Words) -> ReadColumn:
     return ReadColumn(Coded(is_true.astype(np.int8), (False, True)), is_true | is_false)
 
 
-def _numbers(text: Bytes, starts: Places, ends: Places, words: Words) -> ReadColumn:
+def _numbers(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
     """Numbers with few digits, converted together and exactly; others one by one."""
     lengths = ends - starts
-    is_negative = begin_with(words, b"-")
+    is_negative = text[starts] == _MINUS
     numbers, is_read = _decimals(text, starts, ends, is_negative)
     for place in np.flatnonzero(~is_read & (lengths <= _LONGEST_WRITTEN)).tolist():
         number = _own(bytes(text[starts[place] : ends[place]]))
