@@ -64,6 +64,9 @@ _MOST_DIGITS = 15
 """Decimals of at most this many digits are exact floats, and their digits fit a float's 53 bits."""
 
 _LONGEST_NUMBER = 17
+_FEW_DIGITS = 9
+"""So many fit into 32 bits."""
+
 _TENS = 10 ** np.arange(_LONGEST_NUMBER, dtype=np.int64)
 _LONGEST_WRITTEN = 24
 """Python writes no number with more characters."""
@@ -144,7 +147,7 @@ def _decimals(
     is_digit = (digits < 10) & is_inside
     is_point = (characters == _POINT) & is_inside
     digits *= is_digit
-    mantissa = np.zeros(len(starts), dtype=np.int64)
+    mantissa = np.zeros(len(starts), dtype=np.int32 if width <= _FEW_DIGITS else np.int64)
     behind = np.zeros(len(starts), dtype=np.int8)
     for byte in range(width):
         mantissa *= 10
@@ -153,9 +156,11 @@ def _decimals(
     n_digits, n_points = (
         np.add.reduce(flags, axis=0, dtype=np.int8) for flags in (is_digit, is_point)
     )
-    # The point counted as a digit of 0: what is before it moves by one.
+    # The point counted as a digit of 0: what is before it moves by one. As that 0 follows it, it is
+    # the whole number nearest to the quotient; dividing integers would take longer.
     tens = _TENS.take(behind, mode="clip")
-    mantissa -= mantissa // (10 * tens) * (9 * tens) * (n_points > 0)
+    before_point = np.rint(mantissa / (10 * tens)) * (n_points > 0)
+    mantissa = mantissa - before_point.astype(np.int64) * (9 * tens)
     before = n_digits - behind
     leads_with_zero = (text[starts + is_negative] == _ZERO) & (before > 1)
     is_read = (
