@@ -11,8 +11,12 @@ from pyarrow import feather, parquet
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.arrow import arrow_tables
-from rulec.recordings.encodings.arrow.arrow_messages import OddMessageError, batch_size
-from rulec.recordings.encodings.arrow.arrow_tables import Wanted, read_table
+from rulec.recordings.encodings.arrow.arrow_tables import (
+    OddMessageError,
+    Wanted,
+    batch_size,
+    read_table,
+)
 from rulec.recordings.encodings.file_format import FileFormat
 
 FORM = FileFormat("a table", "it has rows", 10_000_000)

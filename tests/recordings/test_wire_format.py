@@ -11,8 +11,14 @@ from hypothesis import strategies as st
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings import wire_format
 from rulec.recordings.encodings.file_format import BinaryFormat
-from rulec.recordings.encodings.wire_format import Field, Message, WireFile, Words, wire_file
-from rulec.recordings.encodings.wire_tables import tables_of
+from rulec.recordings.encodings.wire_format import (
+    Field,
+    Message,
+    WireFile,
+    Words,
+    tables_of,
+    wire_file,
+)
 from support.builders.wire_bytes import counted, double, field, varint, whole
 
 FORM = BinaryFormat("a test", "there is no way out", 1000)

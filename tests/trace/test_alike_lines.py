@@ -14,11 +14,12 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.batch_verify import verify_items
 from rulec.monitoring.verdict import NotJudged
 from rulec.trace.formats.alike_lines import LineBlock
-from rulec.trace.formats.byte_columns import PADDING, column_words, read_values
-from rulec.trace.formats.byte_words import (
+from rulec.trace.formats.byte_columns import (
+    PADDING,
     begin_with,
+    column_words,
     end_as_before,
-    short_decimals,
+    read_values,
     words_for,
     words_from,
 )
@@ -270,9 +271,9 @@ def test_numbers_of_few_bytes_are_the_floats_that_json_says():
     texts = short + longer
     text = b" " * PADDING + " ".join(texts).encode() + b" " * PADDING
     ends = PADDING + np.cumsum([len(one) + 1 for one in texts]) - 1
-    sizes = np.array(list(map(len, texts)))
-    words = words_from(np.frombuffer(text, np.uint8), ends - sizes, 1)
-    numbers, is_read = short_decimals(words[:, 0], sizes)
+    found = values_of(np.frombuffer(text, np.uint8), ends - list(map(len, texts)), ends)
+    assert isinstance(found.column, Numbers)
+    numbers, is_read = found.column.numbers, found.read
     json = re.compile(r"(0|[1-9][0-9]*)([.][0-9]+)?")
     assert is_read.tolist() == [json.fullmatch(one) is not None for one in texts]
     assert numbers[is_read].tolist() == [float(one) for one in texts if json.fullmatch(one)]

@@ -14,26 +14,17 @@ if TYPE_CHECKING:
     from rulec.recordings.recording import Recording
 
 
-def _one(place: str) -> Callable[[RecordingSource], Iterator[Recording]]:
-    """The reader of a format with one recording in a file, and its roads."""
+def _reading(place: str, *given: str) -> Callable[[RecordingSource], Iterator[Recording]]:
+    """The reader of a format whose function takes the ``given`` fields of a source.
+
+    It gives the only recording of a file, or one after the other.
+    """
 
     def read(source: RecordingSource) -> Iterator[Recording]:
-        yield when_called(place)(source.path)
+        found = when_called(place)(*(getattr(source, field) for field in given))
+        yield from found if isinstance(found, Iterator) else (found,)
 
     return read
-
-
-def _one_on_map(place: str) -> Callable[[RecordingSource], Iterator[Recording]]:
-    """The reader of a format with one recording in a file, whose roads may be in another one."""
-
-    def read(source: RecordingSource) -> Iterator[Recording]:
-        yield when_called(place)(source.path, source.map_path)
-
-    return read
-
-
-def _waymo(source: RecordingSource) -> Iterator[Recording]:
-    yield from when_called("waymo.waymo_file.read_waymo")(source.path, source.scenario_id)
 
 
 def _is_part(glance: Glance) -> bool:
@@ -65,7 +56,7 @@ FORMATS = (
         title="CommonRoad scenarios, 2018b and 2020a",
         files="*.xml",
         recognises=lambda glance: glance.root == "commonRoad",
-        read=_one("commonroad.commonroad_file.read_commonroad"),
+        read=_reading("commonroad.commonroad_file.read_commonroad", "path"),
     ),
     RecordingFormat(
         name="commonroad-protobuf",
@@ -73,7 +64,7 @@ FORMATS = (
         files="*.pb, their parts beside each other",
         recognises=lambda glance: glance.name.endswith(".pb"),
         is_companion=_is_part,
-        read=_one("commonroad.commonroad_protobuf.read_protobuf"),
+        read=_reading("commonroad.commonroad_protobuf.read_protobuf", "path"),
     ),
     RecordingFormat(
         name="sumo",
@@ -82,7 +73,7 @@ FORMATS = (
         recognises=lambda glance: (
             glance.root == "fcd-export" or heads.is_fcd_head(heads.head_of(glance))
         ),
-        read=_one_on_map("sumo.sumo_recording.read_sumo"),
+        read=_reading("sumo.sumo_recording.read_sumo", "path", "map_path"),
         roads="beside it, or --map",
     ),
     RecordingFormat(
@@ -90,7 +81,7 @@ FORMATS = (
         title="Argoverse 2's motion forecasting, with the map beside it",
         files="scenario_*.parquet, or its folder",
         recognises=lambda glance: is_named(glance.path, SCENARIO),
-        read=_one_on_map("argoverse.motion_scenario.read_motion"),
+        read=_reading("argoverse.motion_scenario.read_motion", "path", "map_path"),
         roads="beside it, or --map",
     ),
     RecordingFormat(
@@ -98,7 +89,7 @@ FORMATS = (
         title="Argoverse 2's sensor logs, with poses and map beside them",
         files="annotations*.feather, or its folder",
         recognises=lambda glance: is_named(glance.path, ANNOTATIONS),
-        read=_one_on_map("argoverse.sensor_log.read_sensor_log"),
+        read=_reading("argoverse.sensor_log.read_sensor_log", "path", "map_path"),
         roads="beside it, or --map",
     ),
     RecordingFormat(
@@ -106,7 +97,7 @@ FORMATS = (
         title="scenarios of Waymo's Open Motion Dataset",
         files="*.tfrecord, *.tfrecord-00000-of-01000",
         recognises=lambda glance: ".tfrecord" in glance.name,
-        read=_waymo,
+        read=_reading("waymo.waymo_file.read_waymo", "path", "scenario_id"),
         names=when_called("waymo.waymo_file.waymo_ids"),
     ),
     RecordingFormat(
@@ -166,7 +157,7 @@ FORMATS = (
         recognises=lambda glance: (
             glance.name.endswith((".osi", ".mcap")) or glance.head.startswith(b"\x89MCAP0\r\n")
         ),
-        read=_one_on_map("osi.osi_recording.read_osi"),
+        read=_reading("osi.osi_recording.read_osi", "path", "map_path"),
         roads="its own, or --map",
     ),
     RecordingFormat(
@@ -174,6 +165,6 @@ FORMATS = (
         title="scenarios of ScenarioNet's: Waymo, nuScenes, nuPlan and others in one form",
         files="*.pkl",
         recognises=lambda glance: glance.name.endswith((".pkl", ".pickle")),
-        read=_one("scenarionet.scenarionet_file.read_scenarionet"),
+        read=_reading("scenarionet.scenarionet_file.read_scenarionet", "path"),
     ),
 )

@@ -11,7 +11,6 @@ import pytest
 from rulec.diagnostics import RulecError
 from rulec.recordings.recording_files import is_recording
 from rulec.recordings.sumo.fcd import read_fcd
-from rulec.recordings.sumo.fcd_table import read_fcd_table
 
 DATA = """<fcd-export>
 <timestep time="1.00">
@@ -68,7 +67,7 @@ def test_the_same_as_in_xml(tmp_path, write, as_xml2csv):
     (tmp_path / "fcd.xml").write_text(DATA, encoding="utf-8")
     path = write(tmp_path / f"fcd.{write.__name__[3:]}", rows(as_xml2csv))
     assert is_recording(str(path))
-    found, expected = read_fcd_table(path), read_fcd(tmp_path / "fcd.xml")
+    found, expected = read_fcd(path), read_fcd(tmp_path / "fcd.xml")
     assert found.moments == expected.moments == [1_000_000, 1_500_000]
     assert found.tracks.keys() == expected.tracks.keys() == {"a", "p"}
     for key, track in expected.tracks.items():
@@ -81,11 +80,11 @@ def test_the_same_as_in_xml(tmp_path, write, as_xml2csv):
 @pytest.mark.parametrize("write", [as_csv, as_parquet])
 def test_speeds_may_be_left_out(tmp_path, write):
     lines = [{name: x for name, x in row.items() if name != "vehicle_speed"} for row in rows()]
-    found = read_fcd_table(write(tmp_path / f"fcd.{write.__name__[3:]}", lines))
+    found = read_fcd(write(tmp_path / f"fcd.{write.__name__[3:]}", lines))
     assert [repr(own.rows[3]) for own in found.tracks.values()] == ["nan", "nan"]
     lines = rows()
     lines[0]["vehicle_speed"] = ""
-    found = read_fcd_table(write(tmp_path / f"some.{write.__name__[3:]}", lines))
+    found = read_fcd(write(tmp_path / f"some.{write.__name__[3:]}", lines))
     assert [repr(x) for x in found.tracks["a"].rows[3::4]] == ["nan", "3.0"]
 
 
@@ -102,7 +101,7 @@ def test_what_is_wrong_has_its_line(tmp_path, change, line, said):
     lines = rows()
     lines[1] |= change
     with pytest.raises(RulecError) as refused:
-        read_fcd_table(as_csv(tmp_path / "fcd.csv", lines))
+        read_fcd(as_csv(tmp_path / "fcd.csv", lines))
     (found,) = refused.value.diagnostics
     assert found.message == f"the file cannot be read as SUMO's floating-car data: {said}"
     assert found.place.line == line
@@ -113,4 +112,4 @@ def test_a_column_that_is_not_there(tmp_path):
         {name: value for name, value in line.items() if "angle" not in name} for line in rows()
     ]
     with pytest.raises(RulecError, match="it has no column `vehicle_angle`"):
-        read_fcd_table(as_csv(tmp_path / "fcd.csv", lines))
+        read_fcd(as_csv(tmp_path / "fcd.csv", lines))

@@ -36,8 +36,7 @@ from rulec.recordings.encodings.csv_head import PARQUET
 from rulec.recordings.recording_files import is_recording
 from rulec.recordings.recording_format import RecordingSource
 from rulec.recordings.recording_inputs import STANDARD_INPUT, input_files
-from rulec.trace.formats.arrow.parquet import arrow
-from rulec.trace.formats.arrow.parquet_columns import parquet_names
+from rulec.trace.formats.arrow.parquet import arrow, parquet_names
 from rulec.trace.formats.table_reader import STEP, TRACE
 from rulec.trace.trace_model import Ending
 from rulec.value_display import short_repr

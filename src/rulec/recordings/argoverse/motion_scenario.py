@@ -22,6 +22,7 @@ from rulec.recordings.argoverse.object_types import (
     MOTION_TYPES,
     OTHER_SIZE_M,
     USUAL_SIZES_M,
+    tracks_in,
 )
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.file_format import FileFormat
@@ -29,7 +30,6 @@ from rulec.recordings.encodings.file_values import short
 from rulec.recordings.mending.derived_motion import accelerations_of, along
 from rulec.recordings.recording import MOST_STEPS, Participant, Recording
 from rulec.recordings.track import Track, tracked
-from rulec.trace.plain_arrays import most_frequent
 
 MOTION = FileFormat(
     "a motion forecasting scenario of Argoverse 2",
@@ -82,23 +82,16 @@ _REMARK = "sizes are not in the file; usual ones are assumed: vehicles are 4.6 m
 
 
 def _participants(table: ArrowTable) -> Iterator[Participant]:
-    steps, tracks = table.whole["timestep"], table.texts["track_id"]
+    steps = table.whole["timestep"]
     odd = (steps < 0) | (steps > MOST_STEPS)
     if odd.any():
         row = int(np.argmax(odd))
         raise table.refused(row, f"`timestep` is {steps[row]}", f"0 to {MOST_STEPS:,}")
     states = np.stack([table.numbers[name] for name in _WANTED.numbers], axis=1)
-    kinds = table.texts["object_type"]
-    for name, rows in tracks.groups(steps):
-        own = steps[rows]
-        twice = np.flatnonzero(np.diff(own) == 0)
-        if len(twice):
-            row = int(rows[twice[0] + 1])
-            raise table.refused(row, f"`{short(name)}` is twice in time step {steps[row]}")
-        kind = kinds.names[most_frequent(kinds.codes[rows])]
+    for name, kind, rows in tracks_in(table, "track_id", "object_type", steps, "time step {}"):
         if kind not in MOTION_TYPES:
             raise table.refused(int(rows[0]), f"`object_type` is `{short(kind)}`")
-        yield _participant(name, kind, own, states[rows])
+        yield _participant(name, kind, steps[rows], states[rows])
 
 
 def _participant(

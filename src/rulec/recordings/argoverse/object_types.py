@@ -1,4 +1,4 @@
-"""Object categories of Argoverse 2, with usual sizes.
+"""Object categories of Argoverse 2, with usual sizes, and the tracks of objects in a table.
 
 Sources: `av2.datasets.motion_forecasting.data_schema.ObjectType`, and
 `av2.datasets.sensor.constants.AnnotationCategories` with the data set's annotation taxonomy.
@@ -6,10 +6,18 @@ Sources: `av2.datasets.motion_forecasting.data_schema.ObjectType`, and
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from types import MappingProxyType
+from typing import Any
 
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.recording import StatedError
+from rulec.trace.plain_arrays import most_frequent
 
 EGO_SIZE_M = 4.877, 2.0
 """Length and width (m) of Argoverse's car, a Ford Fusion Hybrid, from `EGO_VEHICLE` annotations."""
@@ -91,3 +99,20 @@ RIDES: Mapping[str, str] = MappingProxyType(
 
 NOT_ON_THE_ROAD = frozenset({"SIGN", "STOP_SIGN"})
 """Boards on posts: they obstruct nobody, and the road that they apply to is unknown."""
+
+
+def tracks_in(
+    table: ArrowTable, names: str, kinds: str, moments: NDArray[np.integer[Any]], called: str
+) -> Iterator[tuple[str, str, NDArray[intp]]]:
+    """Each name in a column with its most frequent kind, and its rows by ascending moment.
+
+    Raises RulecError R0610 for a name that is twice in a moment, which is ``called`` so.
+    """
+    kind = table.texts[kinds]
+    for name, rows in table.texts[names].groups(moments):
+        twice = np.flatnonzero(np.diff(moments[rows]) == 0)
+        if len(twice):
+            row = int(rows[twice[0] + 1])
+            why = f"`{short(name)}` is twice in {called.format(moments[row])}"
+            raise table.refused(row, why)
+        yield name, kind.names[most_frequent(kind.codes[rows])], rows

@@ -23,8 +23,13 @@ from rulec.recordings.commonroad.areas import (
     outline_at,
     read_area,
 )
-from rulec.recordings.commonroad.states import State, read_state, read_states
-from rulec.recordings.commonroad.time_extent import TimeExtent, read_steps
+from rulec.recordings.commonroad.states import (
+    State,
+    TimeExtent,
+    read_state,
+    read_states,
+    read_steps,
+)
 from rulec.recordings.encodings.tree import Tree
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 

@@ -58,7 +58,7 @@ def side_in(country: str) -> Side | None:
     return _SIDES.get(country)
 
 
-def country_at(names: Iterable[str], begins: Mapping[str, str] = PLACES) -> str:
+def country_at(names: Iterable[str]) -> str:
     """The country of the first name that begins in a known way; empty if none does."""
-    known = (begins[x] for name in names for x in begins if name.lower().startswith(x))
+    known = (PLACES[x] for name in names for x in PLACES if name.lower().startswith(x))
     return next(known, "")

@@ -8,8 +8,7 @@ element in another one, ``a@b`` an attribute; a field with an empty name belongs
 from __future__ import annotations
 
 from rulec.recordings.commonroad.traffic_signs import UNKNOWN, signs_by_number
-from rulec.recordings.encodings.wire_format import Words
-from rulec.recordings.encodings.wire_tables import tables_of
+from rulec.recordings.encodings.wire_format import Words, tables_of
 
 _IN_ALL_COUNTRIES = {241: "STOP_4_WAY", 242: "NO_TURN_ON_RED", 243: "ONEWAY"}
 _COUNTRIES = "DEU ZAM USA CHN ESP RUS ARG BEL FRA GRC HRV ITA PRI"

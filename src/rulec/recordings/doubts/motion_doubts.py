@@ -1,24 +1,180 @@
-"""Plausibility of tracks: units, steps and axes that contradict the positions."""
+"""Plausibility of tracks: units, steps and axes that contradict the positions, and limits.
+
+Speeds that no vehicle can have, such as simulators give to newly inserted vehicles, are replaced.
+Limits that nobody or everybody breaks may be in the wrong unit.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from math import isfinite
 
 import numpy as np
+import shapely
 from numpy import float64, intp
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.doubts.impossible_speeds import without_impossible_speeds
-from rulec.recordings.doubts.limit_doubts import limit_doubts
 from rulec.recordings.doubts.long_ways import LongWays, long_ways
 from rulec.recordings.doubts.road_doubts import road_doubts
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
-from rulec.recordings.polylines import wrapped
-from rulec.recordings.recording import Recording
-from rulec.recordings.track import TrackStates
+from rulec.recordings.mending.derived_motion import accelerations_of, along, velocities_of
+from rulec.recordings.polylines import places_in, wrapped
+from rulec.recordings.recording import Lanelet, Participant, Recording, is_lane
+from rulec.recordings.track import Track, TrackStates
 from rulec.trace.plain_arrays import median, quantile
+
+_MOST_MPS = 150.0
+"""The highest plausible speed: no vehicle on a road drives 540 km/h."""
+
+_BORNE_OUT = 0.5
+"""A stated speed is confirmed if the positions show at least this share of it."""
+
+_MOST_PART = 0.5
+"""If a larger share of a track's speeds is impossible, their unit is wrong, not single values."""
+
+
+def without_impossible_speeds(recording: Recording) -> Recording:
+    """The recording with impossible speeds replaced by those of positions, and a remark.
+
+    A participant with a single state is left unchanged, since nothing else is known of it.
+    """
+    bodies: list[Participant] = []
+    mended, fastest = 0, 0.0
+    for body in recording.participants:
+        track = body.states.track if isinstance(body.states, TrackStates) else None
+        if track is not None and len(rows := _impossible(track, recording.step_s)):
+            mended += len(rows)
+            fastest = max(fastest, float(np.abs(track.rows[rows, 3]).max()))
+            body = replace(body, states=TrackStates(_mended(track, rows, recording.step_s)))
+        bodies.append(body)
+    if not mended:
+        return recording
+    some = "one speed is" if mended == 1 else f"{mended:,} speeds are up to"
+    remark = (
+        f"{some} {fastest * KMH_PER_MPS:,.0f} km/h, where places say otherwise: "
+        "there it is the speeds of places that count"
+    )
+    return replace(recording, participants=tuple(bodies), remarks=(*recording.remarks, remark))
+
+
+def _impossible(track: Track, step_s: float) -> NDArray[np.intp]:
+    """The rows whose stated speed is impossible and not confirmed by positions."""
+    stated = np.abs(track.rows[:, 3])
+    rows = np.flatnonzero(stated > _MOST_MPS)
+    # Most often there is none
+    if not 0 < len(rows) <= _MOST_PART * len(stated):
+        return rows[:0]
+    moved = np.abs(_by_places(track, step_s))
+    return rows[moved[rows] < _BORNE_OUT * stated[rows]]
+
+
+def _by_places(track: Track, step_s: float) -> NDArray[float64]:
+    """Speeds along headings (m/s), from the positions before and after."""
+    velocities = velocities_of(track.rows[:, :2], (track.steps * step_s).astype(float64))
+    return along(velocities, track.rows[:, 2])
+
+
+def _mended(track: Track, impossible: NDArray[np.intp], step_s: float) -> Track:
+    mended = track.rows.copy()
+    mended[impossible, 3] = _by_places(track, step_s)[impossible]
+    mended[impossible, 4] = accelerations_of(mended[:, 3], (track.steps * step_s).astype(float64))[
+        impossible
+    ]
+    return replace(track, rows=mended)
+
+
+_HIGHEST_KMH = 162.0
+"""The highest plausible limit: 160 km/h is the highest of any country's roads."""
+
+_FEWEST_FAST, _FEWEST_SLOW = 5, 10
+_TOO_FAST = 1.5
+"""The ratio of speed to limit above which limits are doubted.
+
+A mile is 1.609 km. In recordings without doubtful limits, the median ratio is 1.35.
+"""
+
+_TOO_SLOW = 0.55
+"""The ratio of speed to limit below which limits are doubted.
+
+27 m/s are 60 mph, and 60 m/s are 2.2 times as much. Queues may be as slow, so limits are doubted
+only if they are multiples of 5 m/s, as limits in km/h and mph taken for m/s are.
+"""
+
+_EVERY_S = 1.0
+"""The interval at which vehicles are sampled."""
+
+_ROUND_MPS = 5.0
+_ALMOST_MPS = 0.005
+_FAST = 0.9
+"""A vehicle counts as fast from this quantile of its own speeds on."""
+
+_RAILS = frozenset({"rail", "tram"})
+
+
+def limit_doubts(recording: Recording, tracks: Sequence[Track]) -> Iterator[str]:
+    """Remarks on a recording's limits; ``tracks`` are those of moving vehicles."""
+    lanes = [lanelet for lanelet in recording.lanelets.values() if _has_limit(lanelet)]
+    if not lanes:
+        return
+    limits = np.array([lanelet.limit_mps for lanelet in lanes], dtype=float)
+    highest = float(limits.max()) * KMH_PER_MPS
+    if highest > _HIGHEST_KMH:
+        yield f"limits are up to {highest:.0f} km/h: they may be in another unit than m/s"
+        return
+    if len(tracks) < _FEWEST_FAST:
+        return
+    most, least = _shares(tracks, recording.step_s, lanes, limits)
+    if len(most) >= _FEWEST_FAST and (usual := median(np.array(most))) > _TOO_FAST:
+        yield (
+            f"half of the vehicles drive {usual:.2g} times the limit or faster: limits "
+            "may be in another unit, such as mph or m/s in the place of km/h"
+        )
+    is_round = (np.abs(limits - np.round(limits / _ROUND_MPS) * _ROUND_MPS) < _ALMOST_MPS).all()
+    fast = quantile(np.array(least), _FAST) if least else np.inf
+    if is_round and len(least) >= _FEWEST_SLOW and fast < _TOO_SLOW:
+        yield (
+            f"nine in ten vehicles drive {fast:.2g} times the limit or slower, "
+            "and limits are whole numbers of m/s: they may be in km/h or mph"
+        )
+
+
+def _has_limit(lanelet: Lanelet) -> bool:
+    limit = lanelet.limit_mps
+    is_road = is_lane(lanelet) and not lanelet.types & _RAILS
+    return is_road and limit is not None and isfinite(limit) and limit > 0
+
+
+def _shares(
+    tracks: Sequence[Track], step_s: float, lanes: Sequence[Lanelet], limits: NDArray[float64]
+) -> tuple[list[float], list[float]]:
+    """The ratio of each vehicle's speed to the limit where it is fast.
+
+    Where lanes overlap, once by the highest of their limits and once by the lowest.
+    """
+    outlines = [
+        shapely.Polygon(np.vstack((lanelet.left, lanelet.right[::-1]))) for lanelet in lanes
+    ]
+    usual = max(1, round(_EVERY_S / step_s))
+    shares: tuple[list[float], list[float]] = ([], [])
+    for track in tracks:
+        every = min(usual, len(track.steps) - 1)
+        places = track.rows[::every, :2]
+        # Over so long, noise does not make anybody fast
+        ways = np.hypot(*np.diff(places, axis=0).T)
+        speeds = ways / (np.diff(track.steps[::every]) * step_s)
+        rows, lane = places_in(outlines, *places[:-1].T)
+        if not len(rows):
+            continue
+        highest, lowest = np.zeros(len(speeds)), np.full(len(speeds), np.inf)
+        np.maximum.at(highest, rows, limits[lane])
+        np.minimum.at(lowest, rows, limits[lane])
+        on = highest > 0
+        for share, limit in zip(shares, (highest, lowest), strict=True):
+            share.append(quantile(speeds[on] / limit[on], _FAST))
+    return shares
+
 
 _MOST_BODIES = 60
 _FEWEST_BODIES = 3

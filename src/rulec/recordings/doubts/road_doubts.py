@@ -60,8 +60,8 @@ def check_near(recording: Recording, path: Path | None) -> None:
             return
     if not places:
         return
-    low, high = _box(places)
-    least, most = _box([lanelet.centre for lanelet in recording.lanelets.values()])
+    low, high = box_of(places)
+    least, most = box_of([lanelet.centre for lanelet in recording.lanelets.values()])
     raise OTHER_NET.error(
         where,
         f"nobody is near the roads: tracks are at x {low[0]:.1f} to {high[0]:.1f}, "
@@ -217,6 +217,7 @@ def _some_places(body: Participant) -> Points:
     return np.array([(state.x, state.y) for state in some]).reshape(-1, 2)
 
 
-def _box(lines: Sequence[Points]) -> tuple[Points, Points]:
+def box_of(lines: Sequence[Points]) -> tuple[Points, Points]:
+    """The least and the greatest x and y of lines (m)."""
     whole = np.concatenate(lines)
     return whole.min(axis=0), whole.max(axis=0)

@@ -36,7 +36,7 @@ from rulec.recordings.encodings.table_columns import (
     checked_numbers,
 )
 from rulec.recordings.recording_messages import NOT_A_RECORDING
-from rulec.trace.formats.arrow.parquet_columns import parquet_columns, parquet_names
+from rulec.trace.formats.arrow.parquet import parquet_columns, parquet_names
 from rulec.trace.formats.stream_lines import foreign, utf16
 
 LARGEST_NUMBER = 1e19

@@ -7,8 +7,7 @@ messages; a number added by a later version is ``other``.
 
 from __future__ import annotations
 
-from rulec.recordings.encodings.wire_format import Table
-from rulec.recordings.encodings.wire_tables import tables_of, words_of
+from rulec.recordings.encodings.wire_format import Table, tables_of, words_of
 
 _OTHER = "other"
 OBJECTS = words_of("unknown other vehicle pedestrian animal", _OTHER)

@@ -8,7 +8,7 @@ names, builds their values itself, and refuses all others.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from io import BytesIO
 from math import prod
@@ -31,28 +31,23 @@ MOST_AXES = 4
 _OLDEST, _NEWEST = 2, 5
 _LARGEST_KEY = 1 << 63
 _LARGEST_ITEM_BYTES = 4096
-_ARRAY_CORES = ("numpy.core.multiarray", "numpy._core.multiarray")
-_NUMERIC_CORES = ("numpy.core.numeric", "numpy._core.numeric")
 _NAMES: Mapping[str, str] = MappingProxyType(
     {
-        **{f"{core} _reconstruct": "array" for core in _ARRAY_CORES},
-        **{f"{core} scalar": "scalar" for core in _ARRAY_CORES},
-        **{f"{core} _frombuffer": "array of bytes" for core in _NUMERIC_CORES},
-        "numpy ndarray": "class",
-        "numpy dtype": "dtype",
-        "collections defaultdict": "default dict",
-        "collections OrderedDict": "dict",
-        **dict.fromkeys(("builtins set", "builtins frozenset"), "set"),
-        **dict.fromkeys(("__builtin__ set", "__builtin__ frozenset"), "set"),
-        **{
-            f"{module} {name}": "class"
-            for module in ("builtins", "__builtin__")
-            for name in ("int", "long", "float", "str", "bool", "list", "dict")
-        },
-        **dict.fromkeys(("builtins bytes", "__builtin__ bytes"), "bytes"),
-        "_codecs encode": "bytes of text",
+        r"numpy\._?core\.multiarray _reconstruct": "array",
+        r"numpy\._?core\.multiarray scalar": "scalar",
+        r"numpy\._?core\.numeric _frombuffer": "array of bytes",
+        r"numpy ndarray": "class",
+        r"numpy dtype": "dtype",
+        r"collections defaultdict": "default dict",
+        r"collections OrderedDict": "dict",
+        r"(builtins|__builtin__) (set|frozenset)": "set",
+        r"(builtins|__builtin__) (int|long|float|str|bool|list|dict)": "class",
+        r"(builtins|__builtin__) bytes": "bytes",
+        r"_codecs encode": "bytes of text",
     }
 )
+"""Module and name, as patterns -> what it stands for."""
+
 _ORDERS = frozenset("<>|=")
 _DTYPE = re.compile(r"[<>|=]?(?:b1|[iu][1248]|f[248]|[US][0-9]{1,4})")
 
@@ -182,8 +177,7 @@ def _whole(machine: PickleMachine, number: int) -> None:
 
 def _tuple(count: int) -> Callable[[PickleMachine, None], None]:
     def action(machine: PickleMachine, _: None) -> None:
-        values = [_settled(machine.pop()) for _ in range(count)]
-        machine.push(tuple(reversed(values)))
+        machine.push(tuple([_settled(machine.pop()) for _ in range(count)][::-1]))
 
     return action
 
@@ -207,22 +201,13 @@ def _set_items(machine: PickleMachine, values: list[Any]) -> None:
         target[_key(machine, key)] = _settled(value)
 
 
-def _set_item(machine: PickleMachine, _: None) -> None:
-    value, key = machine.pop(), machine.pop()
-    _set_items(machine, [key, value])
+def _keys(machine: PickleMachine, values: Iterable[Any]) -> set[Any]:
+    return {_key(machine, value) for value in values}
 
 
 def _add_items(machine: PickleMachine, _: None) -> None:
-    values = {_key(machine, value) for value in machine.since_mark()}
+    values = _keys(machine, machine.since_mark())
     machine.last(set, "set").update(values)
-
-
-def _frozen_set(machine: PickleMachine, _: None) -> None:
-    machine.push({_key(machine, value) for value in machine.since_mark()})
-
-
-def _drop(_: Any) -> None:
-    """What is popped to be forgotten."""
 
 
 def _put(machine: PickleMachine, number: int | None) -> None:
@@ -240,17 +225,13 @@ def _named(machine: PickleMachine, module: Any, name: Any) -> None:
     if not isinstance(module, str) or not isinstance(name, str):
         raise machine.wrong(f"it asks for something by {_called(module)} and {_called(name)}")
     full = f"{module} {name}"
-    if full not in _NAMES:
+    makes = next((makes for form, makes in _NAMES.items() if re.fullmatch(form, full)), None)
+    if makes is None:
         import_name = f"{short(module)}.{short(name)}"
         raise machine.wrong(
             f"it asks for `{import_name}`, which is none of what a scenario is made of"
         )
-    machine.push(PickledName(full.replace(" ", "."), _NAMES[full]))
-
-
-def _stack_global(machine: PickleMachine, _: None) -> None:
-    name, module = machine.pop(), machine.pop()
-    _named(machine, module, name)
+    machine.push(PickledName(full.replace(" ", "."), makes))
 
 
 def _reduce(machine: PickleMachine, _: None) -> None:
@@ -271,17 +252,14 @@ def _reduce(machine: PickleMachine, _: None) -> None:
             machine.push(PickledArray(np.dtype(text)))
         case "scalar", (np.dtype() as kind, bytes() as raw) if len(raw) == kind.itemsize:
             machine.push(np.frombuffer(raw, kind)[0].item())
-        case "default dict", (PickledName() | None,) | ():
+        case ("default dict", (PickledName() | None,)) | ("default dict" | "dict", ()):
             machine.push({})
-        case "dict", ():
-            machine.push({})
-        case "set", (list() | tuple() as values,):
+        case "set", () | (list() | tuple(),):
+            values = arguments[0] if arguments else ()
             machine.copy(len(values))
-            machine.push({_key(machine, value) for value in values})
+            machine.push(_keys(machine, values))
         case "bytes", ():
             machine.push(b"")
-        case "set", ():
-            machine.push(set())
         case "bytes of text", (str() as text, str() as encoding) if encoding == "latin1":
             machine.copy(len(text))
             machine.push(text.encode("latin1", "replace"))
@@ -321,7 +299,7 @@ def _array(
     return np.frombuffer(raw, kind).reshape(tuple(sizes), order="F" if is_fortran else "C")
 
 
-_ACTIONS: Mapping[bytes, Callable[[PickleMachine, Any], None]] = MappingProxyType(
+_ACTIONS: Mapping[bytes, Callable[[PickleMachine, Any], object]] = MappingProxyType(
     {
         b"\x80": _protocol,
         b"\x95": lambda *_: None,
@@ -343,17 +321,17 @@ _ACTIONS: Mapping[bytes, Callable[[PickleMachine, Any], None]] = MappingProxyTyp
         b"t": lambda machine, _: machine.push(tuple(map(_settled, machine.since_mark()))),
         b"a": lambda machine, _: _add(machine, [machine.pop()]),
         b"e": lambda machine, _: _add(machine, machine.since_mark()),
-        b"s": _set_item,
+        b"s": lambda machine, _: _set_items(machine, [machine.pop(), machine.pop()][::-1]),
         b"u": lambda machine, _: _set_items(machine, machine.since_mark()),
         b"\x90": _add_items,
-        b"\x91": _frozen_set,
+        b"\x91": lambda machine, _: machine.push(_keys(machine, machine.since_mark())),
         b"(": lambda machine, _: machine.marks.append(len(machine.stack)),
-        b"0": lambda machine, _: _drop(machine.pop()),
-        b"1": lambda machine, _: _drop(machine.since_mark()),
+        b"0": lambda machine, _: machine.pop(),
+        b"1": lambda machine, _: machine.since_mark(),
         **dict.fromkeys((b"\x94", b"q", b"r"), _put),
         **dict.fromkeys((b"h", b"j"), _get),
         b"c": lambda machine, full: _named(machine, *full.split(" ", 1)),
-        b"\x93": _stack_global,
+        b"\x93": lambda machine, _: _named(machine, *[machine.pop(), machine.pop()][::-1]),
         b"R": _reduce,
         b"b": _build,
     }

@@ -25,13 +25,11 @@ from rulec.recordings.recording import (
     Recording,
     Rounding,
 )
-from rulec.recordings.recording_format import Glance
 from rulec.recordings.recording_messages import OTHER_NET
 from rulec.recordings.road_map import RoadMap
 from rulec.recordings.sumo.fcd import demand_beside, net_beside, read_fcd
 from rulec.recordings.sumo.fcd_content import FCD, MICROSECONDS, FcdTrack, FloatingCarData
 from rulec.recordings.sumo.fcd_holes import FcdGrid, FcdHoles, holes_of_rows, starts_of
-from rulec.recordings.sumo.fcd_table import read_fcd_table
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.light_states import (
     light_states_beside,
@@ -40,7 +38,6 @@ from rulec.recordings.sumo.light_states import (
 )
 from rulec.recordings.sumo.net import SumoNet, read_net
 from rulec.recordings.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
-from rulec.recordings.table_heads import head_of, is_fcd_head
 from rulec.recordings.track import Track, tracked
 from rulec.recordings.tracks.even_times import unit_of
 
@@ -79,7 +76,7 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     Raises RulecError R0610 for a file of another kind than expected, R0614 if there is no net,
     R0615 for the net of another road, R0701 if a file cannot be opened.
     """
-    data = _content(path)
+    data = read_fcd(path)
     if data.head.geographic:
         why = "its positions are geographic, in degrees of longitude and latitude"
         raise FCD.refused(path, why, help_text="have SUMO write them without --fcd-output.geo")
@@ -121,12 +118,6 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
         complete=COMPLETE - _TRAFFIC if data.head.leaves_out or holes.missing else COMPLETE,
         rounding=rounding,
     )
-
-
-def _content(path: Path) -> FloatingCarData:
-    if not is_fcd_head(head_of(Glance(path))):
-        return read_fcd(path)
-    return read_fcd_table(path)
 
 
 def read_sumo_map(path: Path, step_s: float) -> RoadMap:

@@ -28,9 +28,8 @@ from rulec.recordings.mending.wrong_places import (
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import OBSTACLE_TYPES, Lamp, Participant, id_order
 from rulec.recordings.track import Track, tracked
-from rulec.recordings.tracks.motions_of_rows import MOVING_MPS
 from rulec.recordings.tracks.road_user_types import TYPES, USUAL_TYPE, type_of, usual_size
-from rulec.recordings.tracks.track_rows import TrackRows, check_rows, speeds_that_differ
+from rulec.recordings.tracks.track_rows import MOVING_MPS, TrackRows, check_rows, speeds_that_differ
 from rulec.trace.plain_arrays import distinct
 
 HeadingAt = Callable[[float, float], float]

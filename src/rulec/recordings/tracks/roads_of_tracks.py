@@ -9,12 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import shapely
-from numpy import float64
-from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
 from rulec.recordings.adjacency import with_untold_neighbours
-from rulec.recordings.doubts.road_doubts import NEAR_M
+from rulec.recordings.doubts.road_doubts import NEAR_M, box_of
 from rulec.recordings.map_files import read_map
 from rulec.recordings.recording import Lanelet, Recording
 from rulec.recordings.recording_messages import NET_MISSING
@@ -105,25 +103,16 @@ def track_recording(
 
 def shifted_to_roads(rows: TrackRows, roads: RoadMap, offset: tuple[float, float]) -> TrackRows:
     """The rows, moved by the offset of their frame if only that brings them to the roads."""
-    if (
-        not roads.lanelets
-        or offset == (0.0, 0.0)
-        or _reach(rows, roads.lanelets.values()) <= NEAR_M
-    ):
+    lanelets = roads.lanelets.values()
+    if not lanelets or offset == (0.0, 0.0) or _reach(rows, lanelets) <= NEAR_M:
         return rows
     moved = replace(rows, x=rows.x + offset[0], y=rows.y + offset[1])
-    return moved if _reach(moved, roads.lanelets.values()) <= NEAR_M else rows
-
-
-def _box(lanelets: Iterable[Lanelet]) -> tuple[NDArray[float64], NDArray[float64]]:
-    points = [lanelet.centre for lanelet in lanelets]
-    low = np.min([line.min(axis=0) for line in points], axis=0)
-    return low, np.max([line.max(axis=0) for line in points], axis=0)
+    return moved if _reach(moved, lanelets) <= NEAR_M else rows
 
 
 def _reach(rows: TrackRows, lanelets: Iterable[Lanelet]) -> float:
     """The distance of the nearest participant from the bounding box of the roads (m)."""
-    low, high = _box(lanelets)
+    low, high = box_of([lanelet.centre for lanelet in lanelets])
     places = np.column_stack((rows.x, rows.y))
     beyond = np.maximum(np.maximum(low - places, places - high), 0.0)
     return float(np.hypot(*beyond.T).min())

@@ -85,6 +85,7 @@ TRACK_COLUMNS = (
     *(ColumnKind(lamp, {}) for lamp in _LAMPS),
 )
 
+_OPTIONAL = ("heading", "speed", "acceleration", "length", "width", "standing", "ego")
 _FRAMES = frozenset({"frame", "frame_id", "frameid", "frame_nr", "frame_number"})
 _FRAME = ColumnKind("t", dict.fromkeys(sorted(_FRAMES), 1.0), required=True)
 _TIMES = frozenset(
@@ -171,16 +172,10 @@ def track_rows_of(table: ColumnTable, frame_rate: float | None = None) -> tuple[
         times=times,
         x=numbers["x"],
         y=numbers["y"],
-        heading=numbers.get("heading"),
-        speed=numbers.get("speed"),
         velocity=velocity,
-        acceleration=numbers.get("acceleration"),
         type=named.texts.get("type"),
-        length=numbers.get("length"),
-        width=numbers.get("width"),
-        standing=numbers.get("standing"),
-        ego=numbers.get("ego"),
         front=front,
+        **{name: numbers.get(name) for name in _OPTIONAL},
         lamps={lamp: numbers[lamp] for lamp in _LAMPS if lamp in numbers},
     )
     if frame_rate is None:

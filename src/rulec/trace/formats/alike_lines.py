@@ -16,9 +16,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.trace.formats.byte_columns import PADDING, bytes_from, column_words, read_values
-from rulec.trace.formats.byte_words import Bytes, Places, end_as_before, words_for
-from rulec.trace.formats.partial_json import BOUNDS
+from rulec.trace.formats.byte_columns import (
+    PADDING,
+    Bytes,
+    Places,
+    bytes_from,
+    column_words,
+    end_as_before,
+    read_values,
+    words_for,
+)
+from rulec.trace.formats.json_values import BOUNDS
 from rulec.trace.formats.table_blocks import Coded, Column, Numbers
 from rulec.trace.trace_model import Ending, Trace
 

@@ -1,4 +1,8 @@
-"""Columns of values read from given positions in JSON text."""
+"""Columns of values read from given positions in JSON text.
+
+A text's bytes are taken eight at a time as integers, which NumPy compares at once. The first byte
+of a word is the lowest.
+"""
 
 from __future__ import annotations
 
@@ -7,17 +11,51 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.trace.formats.byte_words import (
-    BYTES,
-    Bytes,
-    Places,
-    Words,
-    begin_with,
-    short_decimals,
-    words_for,
-    words_from,
-)
 from rulec.trace.formats.table_blocks import Coded, Column, Numbers
+
+Bytes = NDArray[np.uint8]
+Places = NDArray[np.int64]
+Words = NDArray[np.uint64]
+
+BYTES: int = 8
+"""Bytes per word."""
+
+
+def words_for(width: int) -> int:
+    """The number of words that hold ``width`` bytes."""
+    return -(-width // BYTES)
+
+
+def words_from(text: Bytes, starts: Places, count: int) -> Words:
+    """``count`` words from each start on, as (starts, words); arbitrary beyond the text."""
+    size = max(count, 1) * BYTES
+    windows = np.ndarray((len(text) - size + 1,), f"V{size}", text, strides=(1,))
+    # ``take`` would first copy all windows.
+    words: Words = windows[starts.clip(0, len(windows) - 1)].view("<u8")
+    return words.reshape(len(starts), size // BYTES)
+
+
+def end_as_before(words: Words, width: int) -> NDArray[np.bool_]:
+    """Mask of rows, but for the first, whose last ``width`` bytes equal those of the row before."""
+    same = np.ones(max(len(words) - 1, 0), dtype=bool)
+    masks = np.frombuffer((b"\xff" * width).rjust(BYTES * words.shape[1], b"\0"), "<u8")
+    for place, mask in enumerate(masks):
+        same &= (words[1:, place] ^ words[:-1, place]) & mask == 0
+    return same
+
+
+def begin_with(words: Words, written: bytes) -> NDArray[np.bool_]:
+    """Mask of the rows of words that begin with these bytes."""
+    same = np.ones(len(words), dtype=bool)
+    masks, parts = _word_of(b"\xff" * len(written)), _word_of(written)
+    for place, (mask, part) in enumerate(zip(masks, parts, strict=True)):
+        same &= words[:, place] & mask == part
+    return same
+
+
+def _word_of(written: bytes) -> Words:
+    return np.frombuffer(written + bytes(-len(written) % BYTES), "<u8")
+
 
 PADDING = 64
 """The text needs this many bytes before the first value and after the last."""
@@ -26,6 +64,10 @@ _MOST_DIGITS = 15
 """Decimals of at most this many digits are exact floats, and their digits fit a float's 53 bits."""
 
 _LONGEST_NUMBER = 17
+_FEW_DIGITS = 9
+"""So many fit into 32 bits."""
+
+_TENS = 10 ** np.arange(_LONGEST_NUMBER, dtype=np.int64)
 _LONGEST_WRITTEN = 24
 """Python writes no number with more characters."""
 
@@ -70,7 +112,7 @@ def read_values(text: Bytes, starts: Places, ends: Places, words: Words) -> Read
         return _texts(text, starts, ends, words)
     if first in (_TRUE[0], _FALSE[0]):
         return _truths(ends - starts, words)
-    return _numbers(text, starts, ends, words)
+    return _numbers(text, starts, ends)
 
 
 def _truths(lengths: Places, words: Words) -> ReadColumn:
@@ -80,14 +122,11 @@ def _truths(lengths: Places, words: Words) -> ReadColumn:
     return ReadColumn(Coded(is_true.astype(np.int8), (False, True)), is_true | is_false)
 
 
-def _numbers(text: Bytes, starts: Places, ends: Places, words: Words) -> ReadColumn:
+def _numbers(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
     """Numbers with few digits, converted together and exactly; others one by one."""
     lengths = ends - starts
-    is_negative = begin_with(words, b"-")
-    if lengths.max() <= BYTES and not is_negative.any():
-        numbers, is_read = short_decimals(words[:, 0], lengths)
-    else:
-        numbers, is_read = _decimals(text, starts, ends, is_negative)
+    is_negative = text[starts] == _MINUS
+    numbers, is_read = _decimals(text, starts, ends, is_negative)
     for place in np.flatnonzero(~is_read & (lengths <= _LONGEST_WRITTEN)).tolist():
         number = _own(bytes(text[starts[place] : ends[place]]))
         if number is not None:
@@ -103,18 +142,25 @@ def _decimals(
     # One row per byte position, aligned at the end, so that digits of one weight are adjacent.
     rows = bytes_from(text, ends - width, width).view(np.uint8).reshape(-1, width)
     characters = np.ascontiguousarray(rows.T)
-    digits = characters - np.uint8(_ZERO)
     is_inside = lengths > np.arange(width - 1, -1, -1)[:, None]
+    digits = characters - np.uint8(_ZERO)
     is_digit = (digits < 10) & is_inside
     is_point = (characters == _POINT) & is_inside
-    mantissa = np.zeros(len(starts), dtype=np.int64)
-    behind = np.zeros(len(starts), dtype=np.int64)
-    is_behind = np.zeros(len(starts), dtype=bool)
+    digits *= is_digit
+    mantissa = np.zeros(len(starts), dtype=np.int32 if width <= _FEW_DIGITS else np.int64)
+    behind = np.zeros(len(starts), dtype=np.int8)
     for byte in range(width):
-        mantissa = np.where(is_digit[byte], mantissa * 10 + digits[byte], mantissa)
-        behind += is_behind
-        is_behind |= is_point[byte]
-    n_digits, n_points = is_digit.sum(axis=0), is_point.sum(axis=0)
+        mantissa *= 10
+        mantissa += digits[byte]
+        behind += is_point[byte] * np.int8(width - 1 - byte)
+    n_digits, n_points = (
+        np.add.reduce(flags, axis=0, dtype=np.int8) for flags in (is_digit, is_point)
+    )
+    # The point counted as a digit of 0: what is before it moves by one. As that 0 follows it, it is
+    # the whole number nearest to the quotient; dividing integers would take longer.
+    tens = _TENS.take(behind, mode="clip")
+    before_point = np.rint(mantissa / (10 * tens)) * (n_points > 0)
+    mantissa = mantissa - before_point.astype(np.int64) * (9 * tens)
     before = n_digits - behind
     leads_with_zero = (text[starts + is_negative] == _ZERO) & (before > 1)
     is_read = (
@@ -126,7 +172,7 @@ def _decimals(
         & ~leads_with_zero
         & ~(is_negative & (mantissa == 0))
     )
-    numbers = mantissa / 10.0 ** behind.clip(max=_MOST_DIGITS)
+    numbers = mantissa / tens
     np.negative(numbers, out=numbers, where=is_negative)
     return numbers, is_read
 

@@ -17,8 +17,14 @@ from rulec.diagnostics import RulecError, SourceLocation
 from rulec.garbage_collection import no_garbage_collection
 from rulec.resource_limits import STATES
 from rulec.trace.formats import json_line_problems
-from rulec.trace.formats.json_numbers import as_written, exactly, may_be_no_float
-from rulec.trace.formats.partial_json import BOUNDS, from_json, to_json
+from rulec.trace.formats.json_values import (
+    BOUNDS,
+    as_written,
+    exactly,
+    from_json,
+    may_be_no_float,
+    to_json,
+)
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
 from rulec.trace.trace_messages import NOT_A_TRACE
 from rulec.trace.trace_model import Ending, State, Trace, ending_in_file, plain_step_s

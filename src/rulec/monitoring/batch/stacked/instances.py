@@ -131,7 +131,7 @@ def numbers_at(
 def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     """All choices for which the rule may not be kept, and possibly others.
 
-    Some read of the rule has an effect somewhere (see ``StackedRun``).
+    Some read of the rule has an effect somewhere (see ``_SimpleRules.busy``).
     """
     stack = reader.stack
     for kind in rule.types:

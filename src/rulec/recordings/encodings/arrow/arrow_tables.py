@@ -1,12 +1,16 @@
 """Tables in Parquet and Feather files, read with Arrow within bounds.
 
-Feather's second version is Arrow's file format for interprocess communication.
+Feather's second version is Arrow's file format for interprocess communication. See the Arrow
+columnar format, "Serialization and Interprocess Communication" (format version 1.5): a file holds
+messages, each with metadata as a flatbuffer and a body whose buffers may be packed. What buffers
+unpack to is added up before Arrow unpacks them; everything else is left to Arrow.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+import struct
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,19 +19,107 @@ from numpy import float64, int64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.encodings.arrow.arrow_messages import OddMessageError, batch_size
-from rulec.recordings.encodings.arrow.nested_columns import (
-    Nested,
-    NestedColumn,
-    NestedKind,
-    OddColumnError,
-    nested_column,
-)
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.file_values import LARGEST, short
 from rulec.recordings.encodings.table_columns import Texts
 from rulec.trace.formats import arrow as arrays
 from rulec.trace.formats.arrow.parquet import arrow as arrow_modules
+
+_DICTIONARY_BATCH, _RECORD_BATCH = 2, 3
+_HEADER_TYPE, _HEADER = 1, 2
+_ROWS, _BUFFERS, _COMPRESSION = 0, 2, 3
+_BATCH_OF_DICTIONARY = 1
+_BUFFER_BYTES = 16
+_MOST_BUFFERS = 100_000
+
+
+class OddMessageError(Exception):
+    """The metadata of a message are inconsistent."""
+
+
+@dataclass(frozen=True, slots=True)
+class BatchSize:
+    """The stated number of rows of a batch, and the bytes that its buffers unpack to."""
+
+    rows: int
+    unpacked_bytes: int
+
+
+def batch_size(metadata: bytes, body: memoryview) -> BatchSize:
+    """The size of a message's batch; zero for messages of other kinds.
+
+    Raises OddMessageError.
+    """
+    try:
+        message = _table_at(metadata, 0)
+        kind = _scalar(metadata, message, _HEADER_TYPE, "<B")
+        if kind not in (_DICTIONARY_BATCH, _RECORD_BATCH):
+            return BatchSize(0, 0)
+        batch = _table_in(metadata, message, _HEADER)
+        if kind == _DICTIONARY_BATCH:
+            batch = _table_in(metadata, batch, _BATCH_OF_DICTIONARY)
+        packed = _place(metadata, batch, _COMPRESSION) is not None
+        sizes = sum(_buffer_sizes(metadata, batch, body, packed=packed))
+        return BatchSize(_scalar(metadata, batch, _ROWS, "<q"), sizes)
+    except (struct.error, IndexError):
+        raise OddMessageError from None
+
+
+def _buffer_sizes(metadata: bytes, batch: int, body: memoryview, *, packed: bool) -> Iterator[int]:
+    at = _place(metadata, batch, _BUFFERS)
+    if at is None:
+        return
+    start = at + _unsigned(metadata, at)
+    count = _unsigned(metadata, start)
+    if count > _MOST_BUFFERS:
+        raise OddMessageError
+    for number in range(count):
+        offset, length = struct.unpack_from("<qq", metadata, start + 4 + number * _BUFFER_BYTES)
+        if offset < 0 or length < 0 or offset + length > len(body):
+            raise OddMessageError
+        if packed and length:
+            (size,) = struct.unpack_from("<q", body, offset)
+            # -1: this buffer is not packed
+            yield length if size == -1 else size
+            if size < -1:
+                raise OddMessageError
+        else:
+            yield length
+
+
+def _table_at(data: bytes, at: int) -> int:
+    return at + _unsigned(data, at)
+
+
+def _unsigned(data: bytes, at: int) -> int:
+    value: int = struct.unpack_from("<I", data, at)[0]
+    return value
+
+
+def _place(data: bytes, table: int, field: int) -> int | None:
+    """The position of a flatbuffer table's field; None if the field is absent."""
+    virtual = table - struct.unpack_from("<i", data, table)[0]
+    if virtual < 0:
+        raise OddMessageError
+    (size,) = struct.unpack_from("<H", data, virtual)
+    if 4 + 2 * field + 2 > size:
+        return None
+    (offset,) = struct.unpack_from("<H", data, virtual + 4 + 2 * field)
+    return table + offset if offset else None
+
+
+def _table_in(data: bytes, table: int, field: int) -> int:
+    at = _place(data, table, field)
+    if at is None:
+        raise OddMessageError
+    return _table_at(data, at)
+
+
+def _scalar(data: bytes, table: int, field: int, form: str) -> int:
+    at = _place(data, table, field)
+    value: int = 0 if at is None else struct.unpack_from(form, data, at)[0]
+    return value
+
 
 MOST_ROWS = 5_000_000
 MOST_CELLS = 100_000_000
@@ -46,12 +138,16 @@ _STREAM_MARK = b"\xff\xff\xff\xff"
 _HEADER_BYTES = 8
 
 
+class OddColumnError(Exception):
+    """A column is not of its kind; ``row`` is the first wrong one, counted from 1."""
+
+    def __init__(self, why: str, row: int | None = None) -> None:
+        self.why, self.row = why, row
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class ArrowTable:
-    """Columns of a file by name, without missing values; numbers are finite and below ``LARGEST``.
-
-    ``metadata``: the metadata of its schema.
-    """
+    """Columns of a file by name, none with missing values; numbers are below ``LARGEST``."""
 
     path: Path
     form: FileFormat
@@ -59,8 +155,6 @@ class ArrowTable:
     numbers: Mapping[str, NDArray[float64]]
     whole: Mapping[str, NDArray[int64]]
     texts: Mapping[str, Texts]
-    nested: Mapping[str, NestedColumn] = field(default_factory=dict)
-    metadata: Mapping[bytes, bytes] = field(default_factory=dict)
 
     def refused(self, row: int, why: str, expected: str = "") -> RulecError:
         """The error (R0610) for a row, counted from 1."""
@@ -74,13 +168,12 @@ class Wanted:
     numbers: tuple[str, ...] = ()
     whole: tuple[str, ...] = ()
     texts: tuple[str, ...] = ()
-    nested: tuple[Nested, ...] = ()
     optional: frozenset[str] = frozenset()
 
     @property
     def names(self) -> tuple[str, ...]:
         """The names of all columns to read."""
-        return (*self.numbers, *self.whole, *self.texts, *(column.name for column in self.nested))
+        return (*self.numbers, *self.whole, *self.texts)
 
 
 def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
@@ -97,23 +190,16 @@ def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
         table = table.combine_chunks()
         columns: dict[str, Any] = {name: table.column(name) for name in table.column_names}
 
-        def read(names: Iterable[str], kind: NestedKind) -> dict[str, Any]:
-            there = (name for name in names if name in columns)
-            return {name: _READERS[kind](name, columns[name], arrow) for name in there}
+        def read(names: Iterable[str], reader: Callable[[str, Any, Any], Any]) -> dict[str, Any]:
+            return {name: reader(name, columns[name], arrow) for name in names if name in columns}
 
         return ArrowTable(
             path=path,
             form=form,
             rows=table.num_rows,
-            numbers=read(wanted.numbers, "number"),
-            whole=read(wanted.whole, "whole"),
-            texts=read(wanted.texts, "text"),
-            nested={
-                column.name: nested_column(column, columns[column.name], arrow, _READERS)
-                for column in wanted.nested
-                if column.name in columns
-            },
-            metadata=table.schema.metadata or {},
+            numbers=read(wanted.numbers, _numbers),
+            whole=read(wanted.whole, _whole),
+            texts=read(wanted.texts, _texts),
         )
     except OddMessageError:
         raise form.refused(path, "it is damaged (its sizes contradict each other)") from None
@@ -195,16 +281,18 @@ def _present(names: Iterable[str], path: Path, form: FileFormat, wanted: Wanted)
     return [name for name in wanted.names if name in known]
 
 
-def _gap(name: str, column: Any) -> None:
+def _check(name: str, column: Any, is_of_kind: bool) -> None:
+    """Refuse a column of another type, or with a missing value."""
+    if not is_of_kind:
+        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
     if column.null_count:
         row = int(np.argmax(column.is_null().to_numpy())) + 1
         raise OddColumnError(f"`{name}` has no value", row)
 
 
 def _numbers(name: str, column: Any, arrow: Any) -> NDArray[float64]:
-    if not (arrow.types.is_floating(column.type) or arrow.types.is_integer(column.type)):
-        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
-    _gap(name, column)
+    types = arrow.types
+    _check(name, column, types.is_floating(column.type) or types.is_integer(column.type))
     values = np.asarray(column.to_numpy(), dtype=float)
     odd = ~(np.abs(values) < LARGEST)
     if odd.any():
@@ -214,18 +302,14 @@ def _numbers(name: str, column: Any, arrow: Any) -> NDArray[float64]:
 
 
 def _whole(name: str, column: Any, arrow: Any) -> NDArray[int64]:
-    if not arrow.types.is_integer(column.type):
-        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
-    _gap(name, column)
+    _check(name, column, arrow.types.is_integer(column.type))
     values: NDArray[int64] = column.cast(arrow.int64()).to_numpy()
     return values
 
 
 def _texts(name: str, column: Any, arrow: Any) -> Texts:
     kind = column.type.value_type if arrow.types.is_dictionary(column.type) else column.type
-    if not (arrow.types.is_string(kind) or arrow.types.is_large_string(kind)):
-        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
-    _gap(name, column)
+    _check(name, column, arrow.types.is_string(kind) or arrow.types.is_large_string(kind))
     codes, known = arrays.codes_in(arrays.whole_array(column))
     if (codes < 0).any():
         raise OddColumnError(f"`{name}` has no value")
@@ -233,19 +317,3 @@ def _texts(name: str, column: Any, arrow: Any) -> Texts:
     if max(map(len, values), default=0) > LONGEST_TEXT:
         raise OddColumnError(f"a text in `{name}` is longer than {LONGEST_TEXT} characters")
     return Texts(codes.astype(int64), values)
-
-
-def _bytes(name: str, column: Any, arrow: Any) -> list[bytes]:
-    if not (arrow.types.is_binary(column.type) or arrow.types.is_large_binary(column.type)):
-        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
-    _gap(name, column)
-    values: list[bytes] = column.to_pylist()
-    return values
-
-
-_READERS: Mapping[NestedKind, Callable[[str, Any, Any], Any]] = {
-    "number": _numbers,
-    "whole": _whole,
-    "text": _texts,
-    "bytes": _bytes,
-}

@@ -5,16 +5,16 @@ from typing import TYPE_CHECKING
 from rulec.lazy_loading import lazy_names
 
 if TYPE_CHECKING:
+    from rulec.trace.formats.arrow.arrow_arrays import array_of_lists as array_of_lists
+    from rulec.trace.formats.arrow.arrow_arrays import array_of_numbers as array_of_numbers
+    from rulec.trace.formats.arrow.arrow_arrays import array_of_texts as array_of_texts
     from rulec.trace.formats.arrow.arrow_arrays import cells_in as cells_in
     from rulec.trace.formats.arrow.arrow_arrays import codes_in as codes_in
     from rulec.trace.formats.arrow.arrow_arrays import whole_array as whole_array
     from rulec.trace.formats.arrow.arrow_arrays import with_plain_texts as with_plain_texts
     from rulec.trace.formats.arrow.arrow_blocks import cut as cut
     from rulec.trace.formats.arrow.arrow_csv import pieces as pieces
-    from rulec.trace.formats.arrow.arrow_made import array_of_lists as array_of_lists
-    from rulec.trace.formats.arrow.arrow_made import array_of_numbers as array_of_numbers
-    from rulec.trace.formats.arrow.arrow_made import array_of_texts as array_of_texts
-    from rulec.trace.formats.arrow.parquet_columns import parquet_names as parquet_names
+    from rulec.trace.formats.arrow.parquet import parquet_names as parquet_names
     from rulec.trace.formats.arrow.table_groups import extent as extent
     from rulec.trace.formats.arrow.table_groups import groups as groups
     from rulec.trace.formats.arrow.table_groups import joined as joined

@@ -11,7 +11,7 @@ from pyarrow import csv, types
 
 from rulec.trace.formats.arrow.arrow_arrays import ends_in, lengths_in
 from rulec.trace.formats.arrow.arrow_blocks import Piece, WholeTraces, start_of_last
-from rulec.trace.formats.byte_words import Bytes
+from rulec.trace.formats.byte_columns import Bytes
 from rulec.trace.formats.table_reader import LONGEST_ROW, OWN, TRACE, Row
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -25,6 +25,8 @@ from rulec.trace.trace_messages import PARQUET_UNAVAILABLE
 from rulec.trace.trace_model import Trace
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from rulec.trace.formats.arrow.arrow_blocks import Piece
 
 _ROWS_AT_ONCE = 1 << 17
@@ -36,6 +38,9 @@ _MARK = b"PAR1"
 """The first and last bytes of a Parquet file."""
 
 _AGAIN = "write or copy the file again"
+_GLANCE = 64
+
+Refused = Callable[..., RulecError]
 
 
 def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
@@ -220,6 +225,46 @@ def rows_of_columns(path: Path, columns: Sequence[str]) -> Iterator[Mapping[str,
                 yield from batch.to_pylist()
         except (pyarrow.ArrowException, OSError, ValueError) as reason:
             raise _unreadable("the file", reason, str(path)) from None
+
+
+def parquet_names(path: Path, refused: Refused) -> tuple[str, ...]:
+    """The names of a file's columns.
+
+    Raises RulecError R0706 if pyarrow is missing, R0701 if the file cannot be opened, and otherwise
+    the error that ``refused`` makes of the reason.
+    """
+    with opened(path) as stream:
+        start = stream.read(_GLANCE)
+        if start and not start.startswith(_MARK) and start.isascii() and b"\0" not in start:
+            way_out = "if it is CSV, call it `.csv`"
+            raise refused("it is not Parquet but text", help_text=way_out)
+    pyarrow, parquet = arrow(str(path))
+    with opened(path) as stream:
+        try:
+            return tuple(parquet.ParquetFile(stream).schema_arrow.names)
+        except (pyarrow.ArrowException, OSError, ValueError) as reason:
+            # Column names that are not UTF-8 raise a ValueError
+            raise refused(f"it is not Parquet ({_first(reason)})") from None
+
+
+def parquet_columns(
+    path: Path, names: Sequence[str], refused: Refused, most_rows: int
+) -> dict[str, NDArray[Any]]:
+    """The named columns of a file, as arrays. Raises RulecError as ``parquet_names`` does."""
+    pyarrow, parquet = arrow(str(path))
+    with opened(path) as stream:
+        try:
+            source = parquet.ParquetFile(stream)
+            if source.metadata.num_rows > most_rows:
+                raise refused(f"it has more than {most_rows:,} rows")
+            table = source.read(columns=list(names))
+            return {name: table.column(name).to_numpy() for name in names}
+        except (pyarrow.ArrowException, OSError, ValueError, TypeError) as reason:
+            raise refused(f"it is damaged Parquet ({_first(reason)})") from None
+
+
+def _first(reason: Exception) -> str:
+    return str(reason).split("\n")[0].split(".")[0][:120]
 
 
 def write_parquet(
