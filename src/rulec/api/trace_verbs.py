@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection import RequestedDrives
     from rulec.monitoring.assumptions import Assumptions
-    from rulec.monitoring.batch.by_states import TraceJudge
     from rulec.monitoring.batch.cell_verdicts import VerdictColumns
+    from rulec.monitoring.fault_containment import TraceJudge
     from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.rates.drive_counts import GroupKey
     from rulec.rates.rule_rates import ViolationRates
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from rulec.trace.trace_columns import TraceCells, TraceColumns
 
 
-def _verifier() -> TraceJudge:
+def _trace_judge() -> TraceJudge:
     """What judges a trace: in arrays, or by its states where there is no NumPy, as in a browser."""
     try:
         return lazy.verify
@@ -50,7 +50,7 @@ def _verifier() -> TraceJudge:
 
 
 class TraceVerbs(SessionSettings):
-    """The verbs of a session that are about traces."""
+    """The verbs of a session that are about traces; ``checked_kinds`` checks their arguments."""
 
     def read_traces(self, path: str | Path) -> Iterator[Trace | RulecError]:
         """Read the traces of a file: ``.csv``, ``.parquet``, else JSON Lines; lazily.
@@ -114,7 +114,7 @@ class TraceVerbs(SessionSettings):
         if assumptions is not None:
             lazy.check_assumed(assumptions.values, compiled.vocabulary, "values")
             trace = assumptions.applied(trace)
-        judged = _verifier()(trace, compiled)
+        judged = _trace_judge()(trace, compiled)
         return replace(judged, law=lazy.edition_of(compiled))
 
     def _judged(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import wraps
 from typing import Protocol, TypeAlias, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
@@ -12,6 +13,8 @@ from rulec.diagnostics.fault_messages import NOT_FAULTS, fault_of, is_fault
 from rulec.logic.free_names import names_of
 from rulec.monitoring.implied_values import names_behind
 from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Verdict
+from rulec.trace import Trace
+from rulec.trace.trace_model import check_frame
 
 Answer: TypeAlias = Verdict | NotJudged
 
@@ -120,3 +123,30 @@ def _joined(one: Answer, other: Answer) -> Answer:
         presumed=tuple(dict.fromkeys((*one.presumed, *other.presumed))),
         faults=(*one.faults, *other.faults),
     )
+
+
+TraceJudge = Callable[[Trace, CompiledRulebook], Verdict]
+"""Judges a trace by a rulebook, in arrays or by its states."""
+
+
+def containing_faults(judge: TraceJudge) -> TraceJudge:
+    """The judge; a fault of rulec in it costs only the rules that it is in."""
+
+    @wraps(judge)
+    def contained(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
+        try:
+            return judge(trace, rulebook)
+        except Exception as problem:
+            if isinstance(problem, RulecError) or not isinstance(trace, Trace):
+                raise
+            check_frame(trace)  # a trace of wrong kinds is the caller's fault, and is said again
+            (answer,) = judged_apart(
+                lambda traces, rules: [judge(one, rules) for one in traces],
+                [trace],
+                rulebook.fitted_to(trace.step_s),
+            )
+        if isinstance(answer, NotJudged):
+            raise answer.error
+        return answer
+
+    return contained

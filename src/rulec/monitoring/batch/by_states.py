@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import wraps
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import as_answer, with_place
 from rulec.monitoring.axiom_violations import check_counting_axioms
-from rulec.monitoring.fault_containment import judged_apart
+from rulec.monitoring.fault_containment import containing_faults
 from rulec.monitoring.implied_values import with_derived_values, words_meant
 from rulec.monitoring.state_validation import check_objects, check_states, check_told
 from rulec.monitoring.uncertainty.suppositions import spelled_out
@@ -20,33 +19,7 @@ from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.resource_limits import BudgetSpentError
 from rulec.trace import Trace
-from rulec.trace.trace_model import check_frame, check_trace
-
-TraceJudge = Callable[[Trace, CompiledRulebook], Verdict]
-"""Judges a trace by a rulebook, in arrays or by its states."""
-
-
-def containing_faults(judge: TraceJudge) -> TraceJudge:
-    """The judge; a fault of rulec in it costs only the rules that it is in."""
-
-    @wraps(judge)
-    def contained(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
-        try:
-            return judge(trace, rulebook)
-        except Exception as problem:
-            if isinstance(problem, RulecError) or not isinstance(trace, Trace):
-                raise
-            check_frame(trace)  # a trace of wrong kinds is the caller's fault, and is said again
-            (answer,) = judged_apart(
-                lambda traces, rules: [judge(one, rules) for one in traces],
-                [trace],
-                rulebook.fitted_to(trace.step_s),
-            )
-        if isinstance(answer, NotJudged):
-            raise answer.error
-        return answer
-
-    return contained
+from rulec.trace.trace_model import check_trace
 
 
 @containing_faults

@@ -8,17 +8,14 @@ from itertools import chain
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.by_states import (
-    containing_faults,
-    judged_by_states,
-    rulebook_for_trace,
-)
+from rulec.monitoring.batch.by_states import judged_by_states, rulebook_for_trace
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_states import joined_states
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
 from rulec.monitoring.batch.stacked.stacked_run import StackedRun
 from rulec.monitoring.bindings import types_of
 from rulec.monitoring.constant_values import with_constants
+from rulec.monitoring.fault_containment import containing_faults
 from rulec.monitoring.implied_values import with_implied_values
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.monitoring.uncertainty.suppositions import spelled_out

@@ -144,12 +144,12 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
             read.unknown if read.count or read.variables else reader.numbers(read, None)
             for read in rule.reads
         ]
-        if not _are_busy(rule, rule.letters.numbers(uncounted)).any():
+        if not _are_busy(rule, rule.letters.letters_of(uncounted)).any():
             return _NO_INSTANCES
     if len(rule.variables) == 1 and stack.starts[-1] <= FEW:
         few = _doubtful_of_few(rule, reader)
         return _of_objects((few,), stack) if len(few) else _NO_INSTANCES
-    every = rule.letters.numbers(numbers_at(rule, reader, None))
+    every = rule.letters.letters_of(numbers_at(rule, reader, None))
     busy = _are_busy(rule, every)
     if not busy.any():
         return _NO_INSTANCES
@@ -213,7 +213,7 @@ def _doubtful_of_few(rule: StackedRule, reader: StackReader) -> Indices:
     ]
     begins = stack.are_first.nonzero()[0]
     objects = stack.object_of[begins]
-    are_kept = rule.are_kept_in_any_order(rule.letters.numbers(numbers), begins)
+    are_kept = rule.are_kept_in_any_order(rule.letters.letters_of(numbers), begins)
     return objects[stack.of_type(kind)[objects] & ~are_kept]
 
 
@@ -244,7 +244,7 @@ def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Ind
     numbers = [
         read.unknown if read.is_composed else reader.numbers(read, spots) for read in rule.reads
     ]
-    letters = rule.letters.numbers(numbers)
+    letters = rule.letters.letters_of(numbers)
     begins = stack.are_first[cells].nonzero()[0]
     objects: Indices = stack.object_of[cells[begins]]
     return objects[~rule.are_kept_in_any_order(letters, begins)]
@@ -272,7 +272,9 @@ def _busy_cells(
     if not len(cells):
         return cells
     spots = Spots(states, {variable: cells}, kind=kind if is_every else None)
-    are_busy = _are_busy(rule, rule.letters.numbers(numbers_at(rule, reader, spots, (variable,))))
+    are_busy = _are_busy(
+        rule, rule.letters.letters_of(numbers_at(rule, reader, spots, (variable,)))
+    )
     return cells[are_busy] if isinstance(are_busy, np.ndarray) else cells if are_busy else _NONE
 
 
@@ -288,7 +290,7 @@ def _pairs(
         left, right = left[differ], right[differ]
         cells = dict(zip(rule.variables, (left, right), strict=True))
         numbers = numbers_at(rule, reader, Spots(stack.state_of[left], cells), rule.variables)
-        busy = np.broadcast_to(_are_busy(rule, rule.letters.numbers(numbers)), len(left))
+        busy = np.broadcast_to(_are_busy(rule, rule.letters.letters_of(numbers)), len(left))
         pairs = stack.object_of[left[busy]] * n_objects + stack.object_of[right[busy]]
         pairs_met.append(distinct(pairs))
     every = distinct(np.concatenate(pairs_met))

@@ -246,7 +246,7 @@ def _letters_apart(rule: StackedRule, reader: StackReader, chosen: _Chosen) -> S
         if instead:
             own = [instead.get(n, x) for n, x in enumerate(own)]
         if instead or chosen.instances.letters is None:
-            letters = rule.letters.numbers(own)
+            letters = rule.letters.letters_of(own)
         else:
             letters = chosen.instances.letters
             if isinstance(letters, np.ndarray):

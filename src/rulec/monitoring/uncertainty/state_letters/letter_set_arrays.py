@@ -62,8 +62,8 @@ class LetterSets:
             partial = partial | self._several[read].take(columns[read])
         return partial
 
-    def numbers(self, columns: Sequence[Numbers]) -> Numbers:
-        """The number of each letter, for columns of the reads' numbers.
+    def letters_of(self, columns: Sequence[Numbers]) -> Numbers:
+        """The number of each letter set, for columns of the reads' numbers.
 
         One for all if they are equal.
         """
