@@ -19,13 +19,13 @@ from rulec.logic.semantics import Semantics, steps_to_settle
 from rulec.monitoring.batch.columns.column_numbers import (
     ComparisonSides,
     comparison_sides,
+    proposition_truth,
     truth_between,
 )
 from rulec.monitoring.moments.name_tables import NameTables, at_places
 from rulec.resource_limits import LOOKBACK
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace.partly_known.partly_known_values import (
-    EnumeratedChoice,
     NameValues,
     Number,
     Truth,
@@ -33,7 +33,6 @@ from rulec.trace.partly_known.partly_known_values import (
 from rulec.trace.partly_known.row_stretches import RowStretches
 from rulec.trace.partly_known.temporal_operators import Beyond
 from rulec.trace.trace_model import Ending
-from rulec.vocabulary import Enumeration
 from rulec.vocabulary.vocabulary_model import choices
 
 
@@ -65,13 +64,8 @@ class RowEvaluation:
         if isinstance(proposition, ltl.Comparison):
             return self._comparison(proposition)
         values = self._values(proposition.name, proposition.arguments)
-        if isinstance(values, EnumeratedChoice):
-            declaration = self.tables.vocabulary.declarations[proposition.name]
-            assert isinstance(declaration, Enumeration), "its values are choices"
-            assert proposition.value is not None, "the formula has been checked"
-            return values.equals(declaration.values.index(proposition.value))
-        assert isinstance(values, Truth), "the formula has been checked"
-        return values
+        declaration = self.tables.vocabulary.declarations[proposition.name]
+        return proposition_truth(values, proposition, declaration)
 
     @property
     def _shows_all(self) -> bool:

@@ -15,10 +15,13 @@ from rulec.logic.fold import fold
 from rulec.logic.free_names import number_of, rename_variables, terms_of
 from rulec.logic.kleene import alias_of
 from rulec.monitoring.batch.columns.calculated_columns import calculated_truth
-from rulec.monitoring.batch.columns.column_numbers import comparison_sides, truth_between
+from rulec.monitoring.batch.columns.column_numbers import (
+    comparison_sides,
+    proposition_truth,
+    truth_between,
+)
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.trace.partly_known.partly_known_values import (
-    EnumeratedChoice,
     NameValues,
     Number,
     Truth,
@@ -26,7 +29,7 @@ from rulec.trace.partly_known.partly_known_values import (
 from rulec.trace.partly_known.row_stretches import RowStretches
 from rulec.trace.partly_known.temporal_operators import Beyond
 from rulec.trace.trace_columns import Array
-from rulec.vocabulary import Enumeration, Vocabulary
+from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import Meaning
 
 
@@ -94,13 +97,7 @@ class _Places:
                 asked, {term: self._term(term) for term in terms}, int(self._bounds[-1])
             )
         values = self._named(asked.name, asked.arguments)
-        if isinstance(values, EnumeratedChoice):
-            declaration = self.reader.vocabulary.declarations[asked.name]
-            assert isinstance(declaration, Enumeration), "its values are choices"
-            assert asked.value is not None, "the formula has been checked"
-            return values.equals(declaration.values.index(asked.value))
-        assert isinstance(values, Truth), "the formula has been checked"
-        return values
+        return proposition_truth(values, asked, self.reader.vocabulary.declarations[asked.name])
 
     def _named(self, name: str, arguments: tuple[str, ...]) -> NameValues:
         if any(argument != self.variable for argument in arguments) or len(arguments) > 1:
