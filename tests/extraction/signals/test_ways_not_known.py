@@ -10,7 +10,7 @@ import pytest
 
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.line_signals import line_signals
-from rulec.extraction.signals.relations import ahead_in_lane
+from rulec.extraction.signals.relations import ahead_in_lane, measured_ahead
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import Light
@@ -218,10 +218,10 @@ def is_sure_of_lane(xs, other, lanes=None):
     there = vehicle(8, dict.fromkeys(range(len(xs)), (other, 0)))
     ego = vehicle(7, {k: (x, 0) for k, x in enumerate(xs)})
     context = context_of(recording(lanes or road(), [ego, there]), ("1", "2", "5"))
-    measured, surely, perhaps = ahead_in_lane(context)
-    assert measured.all()
-    assert perhaps.all()
-    return surely[0].tolist()
+    ahead = ahead_in_lane(context)
+    assert measured_ahead(context).all()
+    assert ahead.possible.all()
+    return ahead.sure[0].tolist()
 
 
 def test_who_is_ahead_beyond_the_junction_may_be_on_another_way_than_ego():
