@@ -6,7 +6,7 @@ from support.source_modules import PACKAGE
 
 ROOMS = ("extraction/signals", "cell_words")
 
-MOST_BY_HAND = 60
+MOST_BY_HAND = 34
 """Names of masks that keep a doubt beside its value; these become fewer, and never more."""
 
 

@@ -304,7 +304,7 @@ def dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     cut_off = (lines | all_queue[LOOSE]) & np.isinf(gap) & (not whole)
     speed = context.ego_extents.along[0]
     longest = longest_gaps(context, speed, context.ego.speed_error[0])
-    dense, surely, perhaps = (
+    dense, surely, loosely = (
         all_queue[reading] & (gap <= longest[reading]) for reading in READINGS
     )
     # There is no queue where the world ends and all its traffic is recorded, and ego is in none if
@@ -313,7 +313,7 @@ def dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     nobody_knows = ~decides[MEASURED].any(axis=0) & ~empty & (not whole)
     # The last vehicle behind a queue may be in it or not
     surely &= ~few[MEASURED] & (gap_behind <= longest[LOOSE])
-    return dense, surely, (perhaps | dense) & ~surely | cut_off | nobody_knows
+    return dense, surely, (loosely | dense) & ~surely | cut_off | nobody_knows
 
 
 def gap_in_lane(context: DriveContext, station: int) -> Floats:

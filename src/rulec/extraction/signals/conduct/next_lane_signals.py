@@ -279,7 +279,7 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
     if "arrivals" in context.recording.complete:
         return np.zeros(context.states, dtype=bool)
     lane, there = _next_lane(context, context.side)
-    perhaps: Flags = there & ~_known_behind(context)
+    found: Flags = there & ~_known_behind(context)
     others, step_s = context.extents, context.recording.step_s
     for rows, edge, states in _unseen(context, int(_UNSEEN_S / step_s) + 1):
         away_s = (states - edge) * step_s
@@ -287,8 +287,8 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
         near = np.abs(place - context.ego_extents.s[0, states]) < context.thresholds.approach_m
         near &= (others.lane[rows, edge] == lane[states]) & (np.abs(away_s) < _UNSEEN_S)
         near &= there[states]
-        perhaps[states[near]] = True
-    return perhaps
+        found[states[near]] = True
+    return found
 
 
 def _unseen(context: DriveContext, most: int) -> Iterator[tuple[NDArray[intp], ...]]:

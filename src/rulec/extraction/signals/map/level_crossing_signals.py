@@ -42,9 +42,8 @@ def _warned(context: DriveContext) -> Truth | None:
     """
     if not _tells_rails(context):
         return None
-    front, nobody = context.ego_extents.s_max[0], np.zeros(context.states, dtype=bool)
-    perhaps = _way_to_next(context, front) <= _SIGNS_M
-    return Truth.known(nobody).unknown_at(perhaps)
+    near = _way_to_next(context, context.ego_extents.s_max[0]) <= _SIGNS_M
+    return Truth(np.zeros_like(near), near)
 
 
 def _way_to_next(context: DriveContext, places: Floats) -> Floats:

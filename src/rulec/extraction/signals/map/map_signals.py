@@ -209,36 +209,34 @@ def _surface(context: DriveContext) -> Measured:
     standing vehicles.
     """
     if not (context.road.junctions or context.road.crossings or _kinds(context)):
-        surfaces = np.full(context.states, _PLAIN)
-        nowhere = np.zeros(context.states, dtype=bool)
-        return Measured(surfaces, nowhere)
+        return Measured(np.full(context.states, _PLAIN))
     middle, place = context.ego_extents.s[0], context.tolerances.place_m
     surfaces = _below_middle(context, middle, context.ego_lane)
     others = [_below_middle(context, middle + way * place, context.ego_lane) for way in (-1, 1)]
     if (context.steady_lane != context.ego_lane).any():
         others.append(_below_middle(context, middle, context.steady_lane))
-    unknown = np.logical_or.reduce([other != surfaces for other in others])
-    beside, may_be = _on_shoulder_beside(context)
+    doubtful = np.logical_or.reduce([other != surfaces for other in others])
+    beside, near_its_edge = _on_shoulder_beside(context)
     surfaces[beside & (surfaces == _PLAIN)] = _SURFACES[SHOULDER]
-    unknown |= may_be
-    on_it, surely, perhaps = _on_crossing(context)
-    unknown |= _may_share(context) & (surfaces == "bus_lane")
-    surfaces[on_it] = "crossing"
-    unknown = (unknown | perhaps) & ~surely
-    return Measured(surfaces, _in_doubt(context, surfaces, unknown))
+    doubtful |= near_its_edge
+    measured, crossing = _on_crossing(context)
+    doubtful |= _may_share(context) & (surfaces == "bus_lane")
+    surfaces[measured] = "crossing"
+    doubtful = (doubtful | crossing.possible) & ~crossing.sure
+    return Measured(surfaces, _in_doubt(context, surfaces, doubtful))
 
 
-def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Flags:
-    """Mask of unknown states without those in which ego drives from one value to another.
+def _in_doubt(context: DriveContext, values: SignalColumn, doubtful: Flags) -> Flags:
+    """Mask of doubtful states without those in which ego drives from one value to another.
 
     There only the moment is in doubt.
     """
-    if not unknown.any():
-        return unknown
+    if not doubtful.any():
+        return doubtful
     moves = context.ego_moves
     longest = context.steps_in(context.thresholds.passed_s)
-    (passing,) = only_when(values[None], unknown[None], moves[None], longest, context.spans)
-    doubt: Flags = unknown & ~passing
+    (passing,) = only_when(values[None], doubtful[None], moves[None], longest, context.spans)
+    doubt: Flags = doubtful & ~passing
     return doubt
 
 
@@ -257,25 +255,25 @@ def _below_middle(context: DriveContext, middle: Floats, lane: NDArray[intp]) ->
 
 
 def _on_shoulder_beside(context: DriveContext) -> tuple[Flags, Flags]:
-    """Masks of states with ego's middle beside its road's lanes, on a hard shoulder, and perhaps.
+    """Masks of states with ego's middle beside its road's lanes, on a hard shoulder, and near it.
 
-    Perhaps where it is no farther from them, or from the shoulder, than an edge is certain.
+    Near is no farther from the lanes, or from the shoulder, than an edge is certain.
     """
-    on_it, perhaps = np.zeros((2, context.states), dtype=bool)
+    on_it, near = np.zeros((2, context.states), dtype=bool)
     shoulders = _shoulders_beside(context)
     if shoulders is None:
-        return on_it, perhaps
+        return on_it, near
     beyond = np.maximum(*beyond_edges(context))
     (there,) = (beyond > 0.0).nonzero()
     if not len(there):
-        return on_it, perhaps
+        return on_it, near
     error = context.tolerances.place_m + np.abs(context.map_offset_m)
     error = np.broadcast_to(np.maximum(context.thresholds.changed_m, error), on_it.shape)[there]
     places = shapely.points(context.ego.x[0, there], context.ego.y[0, there])
     away = shapely.distance(places, shoulders)
     on_it[there] = away == 0.0
-    perhaps[there] = np.where(away == 0.0, beyond[there] < error, away < error)
-    return on_it, perhaps
+    near[there] = np.where(away == 0.0, beyond[there] < error, away < error)
+    return on_it, near
 
 
 @once_a_road
@@ -317,8 +315,8 @@ def _kinds(context: DriveContext) -> list[str]:
     return [kind for kind in _SURFACES if kind in map_contents(context).types]
 
 
-def _on_crossing(context: DriveContext) -> tuple[Flags, Flags, Flags]:
-    """Masks of states with a part of ego on a crossing: as measured, surely and perhaps.
+def _on_crossing(context: DriveContext) -> tuple[Flags, Truth]:
+    """Where a part of ego is on a crossing: as measured, and as far as that is known.
 
     A slanting crossing begins farther along the road for one lane than for another: where its area
     is drawn, that decides.
@@ -329,8 +327,8 @@ def _on_crossing(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     for start, end in context.road.crossings:
         for flags, less in zip(found, (0.0, corner_ahead(context) + place, -place), strict=True):
             flags |= (front - less >= start) & (rear + less < end)
-    on_it, surely, perhaps = found & _meets_crossing(context, np.logical_or.reduce(found))
-    return on_it, surely, perhaps
+    measured, *halves = found & _meets_crossing(context, np.logical_or.reduce(found))
+    return measured, Truth(*halves)
 
 
 def _meets_crossing(context: DriveContext, states: Flags) -> Flags:

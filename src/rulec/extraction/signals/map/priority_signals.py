@@ -80,7 +80,7 @@ def drive_by_drive(
 
 @drive_by_drive
 def _conflicts(context: DriveContext) -> SignalColumns:
-    conflicts, unknown, strangers = (
+    conflicts, unsure, strangers = (
         {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS} for _ in range(3)
     )
     whom, encounters = {name: nobody(context.states) for name in _CONFLICTS}, []
@@ -91,7 +91,7 @@ def _conflicts(context: DriveContext) -> SignalColumns:
             encounters.append(met)
             for kind in met.kinds:
                 from_then = slice(met.enters if kind == ONCOMING else met.first, met.last + 1)
-                (conflicts if met.known else unknown)[kind][from_then] = True
+                (conflicts if met.known else unsure)[kind][from_then] = True
                 if met.known:
                     other = context.surroundings.tracks.participants[met.other.row].id
                     for state in range(from_then.start, from_then.stop):
@@ -107,7 +107,7 @@ def _conflicts(context: DriveContext) -> SignalColumns:
             strangers[name] |= astray(context)
     when = arrivals(context, encounters, strangers)
     strangers[_RING] |= without_junction(context)
-    told = {x: Truth(own, own | unknown[x] | strangers[x]) for x, own in conflicts.items()}
+    told = {x: Truth(own, own | unsure[x] | strangers[x]) for x, own in conflicts.items()}
     return SignalColumns({**told, **when}, whom=whom)
 
 
@@ -203,25 +203,22 @@ def _until_out(context: DriveContext, passage: Passage) -> slice:
 @drive_by_drive
 def _roads(context: DriveContext) -> SignalColumns:
     """What the map says about the junction that ego nears or is in."""
-    columns = {name: np.zeros(context.states, dtype=bool) for name in _ROADS}
-    unregulated, own, others, priority = _ROADS
-    unknown = {name: astray(context) for name in _ROADS}
+    told = _ROADS if _tells_priority(context) else _ROADS[:-1]
+    sure = {name: np.zeros(context.states, dtype=bool) for name in told}
+    possible = {name: astray(context).copy() for name in told}
     for passage in own_passages(context):
         junction = context.surroundings.passages.junctions[passage.junction]
         span, way = _until_out(context, passage), junction.ways[passage.way]
-        columns[unregulated][span] = junction.regulated is False
-        for name in _ROADS:
-            unknown[name][span] = False
-        unknown[unregulated][span] = junction.regulated is None
-        columns[own][span], columns[others][span] = junction.ending_roads[passage.way]
         has_sign = any(entry.signs & _PRIORITY for entry in way.approaches)
-        may_have = any(entry.untold_signs & _PRIORITY for entry in way.approaches)
-        columns[priority][span], unknown[priority][span] = has_sign, may_have and not has_sign
-    if not _tells_priority(context):
-        del columns[priority], unknown[priority]
-    return SignalColumns(
-        {name: Truth.known(own).unknown_at(unknown[name]) for name, own in columns.items()}
-    )
+        untold = any(entry.untold_signs & _PRIORITY for entry in way.approaches)
+        own, others = junction.ending_roads[passage.way]
+        halves = (
+            (junction.regulated is False, junction.regulated is not True),
+            *((own, own), (others, others), (has_sign, has_sign or untold)),
+        )
+        for name, (is_sure, is_possible) in zip(told, halves, strict=False):
+            sure[name][span], possible[name][span] = is_sure, is_possible
+    return SignalColumns({name: Truth(sure[name], possible[name]) for name in told})
 
 
 def _tells_priority(context: DriveContext) -> bool:

@@ -51,13 +51,13 @@ def crossings_lit(context: DriveContext) -> dict[float, tuple[bool, bool]]:
     told = "light" in context.recording.complete
     own = _starts(context, _crossings_with_lights(context))
     shared = [] if told else _starts(context, _crossings_over_lit_lanes(context))
-    lit, perhaps = (() if told else _directed_stretches(context, there) for there in (True, False))
+    lit, others = (() if told else _directed_stretches(context, there) for there in (True, False))
     untold = () if told else _junctions_with_lights_untold(context)
     found = {}
     for start, _ in context.road.crossings:
         directed = any(abs(start - other) < 1.0 for other in own)
         directed |= any(low <= start <= high for low, high in lit)
-        unsure = any(low <= start <= high for low, high in (*perhaps, *untold))
+        unsure = any(low <= start <= high for low, high in (*others, *untold))
         unsure |= any(abs(start - other) < 1.0 for other in shared)
         found[start] = directed, unsure and not directed
     return found

@@ -49,8 +49,8 @@ def indicator(context: DriveContext) -> Measured | None:
         tells and "hazard_lights" not in (lamps or ())
         for lamps, tells in zip(steps, tells_hazards, strict=True)
     ]
-    unknown = both & context.spans.any(both & np.array(no_hazards))
-    unknown |= np.array([lamps is None for lamps in steps])
+    doubtful = both & context.spans.any(both & np.array(no_hazards))
+    doubtful |= np.array([lamps is None for lamps in steps])
     is_dark = np.array([lamps is not None and not lamps & _INDICATORS for lamps in steps])
     spans, across_mps = context.spans, _speed_across(context)
     changed = spans.changes(context.steady_lane)
@@ -65,13 +65,13 @@ def indicator(context: DriveContext) -> Measured | None:
     jumps = across_mps > _JUMP_MPS
     # A jump may end short of the mark, or begin just behind it
     about = spans.within(jumps, context.steps_in(_JUMP_S), around=True)
-    unknown[changes] |= (codes[changes] == 0) & about[changes]
+    doubtful[changes] |= (codes[changes] == 0) & about[changes]
     off_the_edge = jumps & ~changed
-    unknown |= is_dark & (off_the_edge | spans.after(off_the_edge))
+    doubtful |= is_dark & (off_the_edge | spans.after(off_the_edge))
     abrupt = changed & (across_mps > _ABRUPT_MPS)
     abrupt = spans.within(abrupt, context.steps_in(_ABRUPT_S))
-    unknown |= is_dark & abrupt & ~changed
-    return Measured(codes, unknown, texts=_INDICATIONS)
+    doubtful |= is_dark & abrupt & ~changed
+    return Measured(codes, doubtful, texts=_INDICATIONS)
 
 
 def _lit_across(context: DriveContext, codes: NDArray[intp], change: int) -> int:

@@ -18,6 +18,7 @@ from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import distinct, ranges
 
 _NO_ROOM_S, _DRAWS_AWAY_MPS = 0.3, 1.0
@@ -144,15 +145,15 @@ def _gives_way(
     too_near &= there & (faster > 0) & (high <= own.s_min[0, changes])
     cut_short = there & _comes_in_close(context, reaches, changes)
     whom = would | would_be_close | too_near | cut_short
-    hard, may_be_hard = _brake(context, whom, reaches, changes)
+    hard = _brake(context, whom, reaches, changes)
     # Who brakes before ego's body comes over the mark may let it in
     whom = there & _comes_in_close(context, begins, changes)
-    at_once, may_be_at_once = _brake(context, whom, begins, changes)
-    at_once |= may_be_at_once & makes_way
-    sure = (would & beside) | hard
+    early = _brake(context, whom, begins, changes)
+    at_once = early.sure | (early.possible & makes_way)
+    sure = (would & beside) | hard.sure
     for way in sure.any(axis=0).nonzero()[0].tolist():
         sure[:, way] &= ~_held_up(context, int(begins[way]), int(lanes[way]))
-    return sure, would | would_be_close | may_be_hard | at_once
+    return sure, would | would_be_close | hard.possible | at_once
 
 
 def _would_have_no_room(
@@ -232,8 +233,8 @@ def _drifts(
 
 def _brake(
     context: DriveContext, whom: Flags, begins: NDArray[intp], changes: NDArray[intp]
-) -> tuple[Flags, Flags]:
-    """Masks of those in ``whom`` that then brake harder than ``disturbing_mps2``, and perhaps do.
+) -> Truth:
+    """Which of those in ``whom`` then brake harder than ``disturbing_mps2``.
 
     By way; also up to ``reaction_s`` later.
     """
@@ -249,7 +250,7 @@ def _brake(
         flags = np.zeros(whom.shape, dtype=bool)
         flags[rows] = _any_between(context, begins, changes, partial(brake, sign=sign))
         found.append(flags & whom)
-    return found[0], found[1]
+    return Truth(*found)
 
 
 def _any_between(
