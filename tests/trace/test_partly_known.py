@@ -201,3 +201,30 @@ def test_a_choice_equals_a_value_if_it_can_be_no_other(choices, place):
     assert truth.sure.tolist() == [own == {place} for own in choices]
     assert truth.possible.tolist() == [place in own for own in choices]
     assert choice.unknown.tolist() == [len(own) > 1 for own in choices]
+
+
+@given(pair=pairs())
+def test_a_mask_is_an_operand_that_is_known(pair):
+    left, right = pair
+    truth, mask = as_rows(left), np.array([value == "T" for value in right])[None]
+    for found, expected in (
+        (mask & truth, truth & Truth.known(mask)),
+        (truth & mask, truth & Truth.known(mask)),
+        (mask | truth, truth | Truth.known(mask)),
+        (truth | mask, truth | Truth.known(mask)),
+    ):
+        assert listed(found, len(left)) == listed(expected, len(left))
+    more = truth.or_possibly(mask)
+    assert listed(more, len(left))[0] == listed(truth, len(left))[0]
+    assert listed(more, len(left))[1] == listed(truth | Truth.known(mask), len(left))[1]
+
+
+@given(st.integers(-9, 9), st.integers(0, 5), st.integers(-9, 9))
+def test_a_number_is_compared_for_all_that_it_may_be(measured, error, limit):
+    number = Number.within(np.array([measured]), error)
+    numbers = [measured + more for more in range(-error, error + 1)]
+    for truth, outcomes in (
+        (number > limit, [value > limit for value in numbers]),
+        (number < limit, [value < limit for value in numbers]),
+    ):
+        assert (truth.sure.item(), truth.possible.item()) == (all(outcomes), any(outcomes))
