@@ -174,6 +174,17 @@ def test_what_only_a_dropped_rule_speaks_of_is_not_used():
     ]
 
 
+def test_the_provision_that_a_value_is_from():
+    texts = (
+        'rulebook a\noption o = off cite "s. 1"\nparam n = 2 cite "s. 2"\n',
+        'rulebook b\nextends a\nset o = on cite "by-law 1"\nset n = 3\n',
+    )
+    files = [parse(decode("r.rules", text.encode()))[0] for text in texts]
+    found = book_lineage_of(files, "2024-01-01")
+    assert [value.cite for value in settings(found, "o")] == ["s. 1", "by-law 1"]
+    assert [value.cite for value in settings(found, "n")] == ["s. 2", ""]
+
+
 def test_the_comment_beside_a_value(village):
     assert [one.note for one in settings(village, "pace")] == ["What signs said.", "", ""]
 

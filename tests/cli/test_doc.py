@@ -167,11 +167,28 @@ def test_a_definition_is_under_the_head_of_its_own_book(folder, capsys):
     assert "```rulec\ndefine d(v: car) = near(v) and p\n```" in definitions
 
 
+def test_the_provision_that_a_number_and_a_definition_are_from(folder, capsys):
+    words = "quantity speed in km/h default 0\n"
+    own = 'param pace : speed = 7 km/h cite "s. 4(2)"  # on foot\n'
+    define = 'define slow = speed <= pace cite "s. 4(1)"\nhard rule a { require always slow }\n'
+    Path("old.rules").write_text(f"rulebook old\n{words}{own}{define}")
+    Path("new.rules").write_text(
+        'rulebook new\nextends old\nset pace = 6 km/h in force from 2020-01-01 cite "by-law 1"\n'
+    )
+    page = written(capsys, "./new.rules", "--format", "markdown")
+    values = section(page, "## Options and parameters")
+    assert "| `7 km/h` |  | always | `old` | s. 4(2) | on foot |" in values
+    assert "| `6 km/h` | ✔ | from 2020-01-01 | `new` | by-law 1 |  |" in values
+    assert "`slow` is defined by `old`. s. 4(1).\n" in section(page, "## Definitions")
+
+
 def test_what_stands_behind_the_rules(page):
     values = section(page, "## Options and parameters")
-    assert "\n| `pace` | parameter | `25 km/h` |  | from 2022-01-01 | `mainland` |  |\n" in values
-    assert "\n| `pace` | parameter | `20 km/h` | ✔ | always | `island` |  |\n" in values
-    assert "| until 2021-12-31 | `mainland` | What signs said. |\n" in values
+    assert (
+        "\n| `pace` | parameter | `25 km/h` |  | from 2022-01-01 | `mainland` |  |  |\n" in values
+    )
+    assert "\n| `pace` | parameter | `20 km/h` | ✔ | always | `island` |  |  |\n" in values
+    assert "| until 2021-12-31 | `mainland` |  | What signs said. |\n" in values
     # No rule speaks of it.
     assert "strict" not in values
     definitions = section(page, "## Definitions")

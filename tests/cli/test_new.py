@@ -68,7 +68,8 @@ def test_a_rulebook_upon_a_treaty_is_short(tmp_path, monkeypatch):
     assert main(["new", "atlantis", "--extends", "vienna"]) == 0
     lines = (tmp_path / "atlantis.rules").read_text().splitlines()
     assert len(lines) <= 80
-    assert "# set strict_crossings = off  # Art. 11(9): no overtaking at crossings at all" in lines
+    told = '# set strict_crossings = off cite "…"  # Art. 11(9): no overtaking at crossings at all'
+    assert told in lines
     # Numbers by which a schema is tuned are no law.
     assert not any("standstill_memory" in line for line in lines)
     named = " ".join(line.lstrip("# ") for line in lines).replace(",", " ").split()
@@ -117,6 +118,6 @@ def test_what_can_be_set_of_a_base(tmp_path, monkeypatch, capsys):
     assert main(["new", "upon", "--extends", "base"]) == 0
     text = (tmp_path / "upon.rules").read_text()
     lines = [line for line in text.splitlines() if line.startswith("# set")]
-    assert lines == ["# set strict = on  # Art. 3"]
+    assert lines == ['# set strict = on cite "…"  # Art. 3']
     (tmp_path / "upon.rules").write_text(text.replace("# set", "set"))
     assert main(["check", "./upon.rules"]) == 0

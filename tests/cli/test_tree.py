@@ -194,6 +194,7 @@ def test_json(folder, capsys):
         "since": "",
         "until": "",
         "current": True,
+        "cite": "",
         "note": "",
         "head": "",
     }

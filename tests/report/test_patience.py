@@ -48,6 +48,12 @@ def test_it_says_what_it_is_doing_until_it_is_done(soon, capfd):
     assert capfd.readouterr().err == ""
 
 
+def test_many_arguments_are_not_listed(soon, capfd):
+    with patience(["check", *(f"rulebooks/book_{k}.rules" for k in range(99))]):
+        line = said(capfd, "rulec: at work on `rulec check rulebooks").splitlines()[0]
+    assert len(line) < 80
+
+
 @pytest.mark.parametrize("words", [["diff", "-q"], ["test", "--quiet"], ["lsp"], ["monitor", "de"]])
 def test_who_is_quiet_or_waits_says_nothing(words, soon):
     with patience(words):

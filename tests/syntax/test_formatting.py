@@ -320,3 +320,23 @@ def test_a_column_of_comments_is_given_up_where_it_does_not_fit():
     text = f"rulebook b  {long}\nsignal {'p' * 30}  # y\n\nhard rule r {{\n  require p\n}}\n"
     column = text.replace("rulebook b  ", f"{'rulebook b':37}  ")
     assert formatted(column) == text
+
+
+def test_the_provision_of_a_number_stands_beside_it_or_below():
+    long = "s. 4(2) of the by-laws that the council of the island gave itself, as amended"
+    assert formatted(
+        "rulebook b\nuse road\n"
+        'set reaction_time=1.5 s\n  cite "s. 4"\n'
+        f'set full_braking = 6 m/s^2 cite "{long}"\n'
+        'option tight = on cite   "s. 3"\n'
+        "# why\ndefine quick = speed > 100 km/h # so fast\n"
+        '# below\ncite "s. 5" # read\n'
+    ) == (
+        "rulebook b\nuse    road\n"
+        'set    reaction_time = 1.5 s cite "s. 4"\n'
+        "set    full_braking = 6 m/s^2\n"
+        f'  cite "{long}"\n'
+        'option tight = on cite "s. 3"\n'
+        "# why\ndefine quick = speed > 100 km/h  # so fast\n"
+        '  # below\n  cite "s. 5"  # read\n'
+    )

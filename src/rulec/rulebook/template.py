@@ -94,9 +94,10 @@ def _options(books: Sequence[tree.File]) -> list[str]:
     for item in (item for book in books for item in book.items):
         if isinstance(item, tree.OptionItem | tree.SetItem) and isinstance(item.value, bool):
             _, known = values.get(item.name.text, (False, ""))
-            values[item.name.text] = item.value, description(item.span) or known
+            notes = (item.cite.value if item.cite else ""), description(item.span)
+            values[item.name.text] = item.value, ": ".join(filter(None, notes)) or known
     return [
-        f"# set {name} = {'on' if value else 'off'}{note and f'  # {note}'}"
+        f'# set {name} = {"on" if value else "off"} cite "…"{note and f"  # {note}"}'
         for name, (value, note) in values.items()
     ]
 

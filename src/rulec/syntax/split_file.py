@@ -17,6 +17,12 @@ from rulec.syntax.messages.structure import StructureMessages
 from rulec.syntax.scanner import Token
 from rulec.syntax.split_rule import RuleSplitter
 
+_OWN_CLAUSES = {
+    "provisions": "certainty",
+    **dict.fromkeys(("option", "param", "set", "define", "redefine"), "cite"),
+}
+"""Words of items that may have a clause of rules, and the word of that clause."""
+
 
 @dataclass(slots=True)
 class FileSplitter:
@@ -85,14 +91,14 @@ class FileSplitter:
 
     def _end_of_item(self, index: int) -> int:
         end = index + 1
-        is_list = self.marks.is_word(index, "provisions")
+        own = _OWN_CLAUSES.get(self.tokens[index].text, "")
         while end < len(self.tokens):
             if self.marks.is_symbol(end, "{") or self.marks.is_symbol(end, "}"):
                 break
             if self.marks.begins_item(end):
                 break
-            is_own = is_list and self.marks.is_word(end, "certainty")
-            if self.tokens[end].first and self.marks.is_word(end, *CLAUSE_WORDS) and not is_own:
+            is_clause = self.tokens[end].first and self.marks.is_word(end, *CLAUSE_WORDS)
+            if is_clause and not self.marks.is_word(end, own):
                 break
             end += 1
         return end

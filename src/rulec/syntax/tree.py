@@ -322,23 +322,25 @@ class InForce(SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class OptionItem(SyntaxNode):
-    """The declaration of an option: ``option name = on``."""
+    """The declaration of an option: ``option name = on``; ``cite "…"`` may follow."""
 
     name: Name
     value: bool
+    cite: Text | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class ParamItem(SyntaxNode):
     """The declaration of a parameter: ``param name : dimension = value``.
 
-    The dimension may be omitted; ``in force …`` may follow.
+    The dimension may be omitted; ``in force …`` and ``cite "…"`` may follow.
     """
 
     name: Name
     dimension: Name | None
     value: Formula
     in_force: InForce | None = None
+    cite: Text | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -348,6 +350,7 @@ class SetItem(SyntaxNode):
     name: Name
     value: bool | Formula
     in_force: InForce | None = None
+    cite: Text | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -363,6 +366,7 @@ class DefineItem(SyntaxNode):
     parameters: tuple[Parameter, ...]
     body: Formula
     again: bool = False
+    cite: Text | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -135,6 +135,7 @@ def _history(
             since=own.since if own else "",
             until=own.until if own else "",
             current=good[-1:] == [index],
+            cite=item.cite.value if item.cite else "",
             note=description(item.span),
             head="" if _head(item) == head else _head(item),
         )

@@ -80,8 +80,9 @@ class RuleHistory:
 class ConstantValue:
     """A value or meaning that a book gave a constant, as written.
 
-    ``current`` marks the one that applies. ``note`` is the comment beside it. ``head`` is set if
-    this book gave a definition other parameters than the last one.
+    ``current`` marks the one that applies. ``cite`` is the provision that it is from, ``note`` the
+    comment beside it. ``head`` is set if this book gave a definition other parameters than the last
+    one.
     """
 
     book: str
@@ -89,6 +90,7 @@ class ConstantValue:
     since: str = ""
     until: str = ""
     current: bool = False
+    cite: str = ""
     note: str = ""
     head: str = ""
 

@@ -226,6 +226,7 @@ def _provision(constant_history: rule_lineage.ConstantHistory, book: str, provis
         dates = f" {print_in_force(tree.InForce(setting.since, setting.until))}" if dated else ""
         value = f"{setting.written}{dates}"
         origin = "own" if setting.book == book else f"from {setting.book}"
+        origin += f", {setting.cite}" if setting.cite else ""
         if setting.current:
             label.append(visible(f" = {value}  "))
             label.append(visible(origin), "dim")

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, TextIO
 import click
 
 from rulec.report.text.outgoing import outgoing
-from rulec.report.text.terminal_text import visible, wants_color
+from rulec.report.text.terminal_text import cut, visible, wants_color
 
 if TYPE_CHECKING:
     from rulec.report.text.progress_bar import ProgressBar
@@ -121,7 +121,7 @@ def patience(arguments: Sequence[str]) -> Iterator[None]:
             os.write(2, f"{text}\n".encode(errors="backslashreplace"))
 
     before = signal.signal(signal.SIGALRM, tell)
-    with doing(f"at work on `rulec {' '.join(arguments)}`"):
+    with doing(f"at work on `{cut(' '.join(('rulec', *arguments)), PAGE_WIDTH // 2)}`"):
         signal.setitimer(signal.ITIMER_REAL, _FIRST_S, _AGAIN_S)
         try:
             yield

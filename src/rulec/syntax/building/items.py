@@ -120,19 +120,21 @@ def _definition(values: NodeValues, node: ParseNode) -> tree.Definition:
     name, *others = values.names(node)
     option = bool(node.leaves("ON"))
     other = others[0] if others else None
+    cite = next((values.text(clause) for clause in node.branches("cite_clause")), None)
     match node.kind:
         case "option_item":
-            return tree.OptionItem(name, option, span=span)
+            return tree.OptionItem(name, option, cite, span=span)
         case "param_item":
             value, dates = value_of(values, node), _dates(values, node)
-            return tree.ParamItem(name, other, value, dates, span=span)
+            return tree.ParamItem(name, other, value, dates, cite, span=span)
         case "set_item" if option or node.leaves("OFF"):
-            return tree.SetItem(name, option, span=span)
+            return tree.SetItem(name, option, cite=cite, span=span)
         case "set_item":
-            return tree.SetItem(name, value_of(values, node), _dates(values, node), span=span)
+            value, dates = value_of(values, node), _dates(values, node)
+            return tree.SetItem(name, value, dates, cite, span=span)
         case "define_item":
             body, again = value_of(values, node), bool(node.leaves("REDEFINE"))
-            return tree.DefineItem(name, parameters(values, node), body, again, span=span)
+            return tree.DefineItem(name, parameters(values, node), body, again, cite, span=span)
         case "drop_item":
             return tree.DropItem(name, values.text(node), span=span)
         case "soften_item":
@@ -147,7 +149,8 @@ def value_of(values: NodeValues, node: ParseNode) -> tree.Formula:
     (value,) = (
         child
         for child in node.children
-        if isinstance(child, ParseNode) and child.kind not in ("parameters", "in_force")
+        if isinstance(child, ParseNode)
+        and child.kind not in ("parameters", "in_force", "cite_clause")
     )
     return formula(values, value)
 

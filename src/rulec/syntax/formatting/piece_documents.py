@@ -124,16 +124,19 @@ class DocumentBuilder:
     def assigned(self, node: ParseNode, column: int, *, broken: bool) -> Document:
         """``word name = value``, with the name at ``column``.
 
-        The value gets lines of its own if it is ``broken`` off, or too long.
+        The value gets lines of its own if it is ``broken`` off, or too long; so does a ``cite``.
         """
         at = next(index for index, child in enumerate(node.children) if _is_equals(child)) + 1
         word = self.spell(node.children[0])
         assert isinstance(word, str), "a word is a leaf"
+        values = [child for child in node.children[at:] if child.kind != "cite_clause"]
         head = run(word.ljust(column), self.plain(node.children[1:at], node.kind))
-        lead = self.gap(Break(), first_leaf(node.children[at]).start)
-        return group(
-            head, Nest(2, run(lead, self.plain(node.children[at:], node.kind))), forced=broken
-        )
+        lead = self.gap(Break(), first_leaf(values[0]).start)
+        given = group(head, Nest(2, run(lead, self.plain(values, node.kind))), forced=broken)
+        if len(values) == len(node.children) - at:
+            return given
+        own_line = self.gap(Break(), first_leaf(node.children[-1]).start)
+        return group(given, Nest(2, run(own_line, self.spell(node.children[-1]))))
 
     def block(self, node: ParseNode) -> Document:
         """A head, and entries in braces, one per line."""

@@ -76,7 +76,7 @@ class Pieces:
                 return self.speller.worded(node, len("signal "), deeper=0)
             case "topics_item" | "provisions_item":
                 return self.speller.block(node)
-            case "define_item" | "param_item" | "set_item":
+            case "define_item" | "option_item" | "param_item" | "set_item":
                 broken = self._breaks_behind_equals(node)
                 return self.speller.assigned(node, column, broken=broken)
             case _ if self.word(piece) in _WORDS:

@@ -187,7 +187,7 @@ def _values_section(inherited: BookLineage, at: str, words: DocumentLanguage) ->
     if rows:
         yield Heading(2, words.say("Options and parameters"))
         yield words.say("The value that counts on {} is the one with a mark.", at)
-        head = ["name", "kind", "value", "counts", "in force", "given by", "note"]
+        head = ["name", "kind", "value", "counts", "in force", "given by", "provision", "note"]
         yield table([*map(words.say, head)], rows)
 
 
@@ -200,6 +200,7 @@ def _values(constant_history: ConstantHistory, words: DocumentLanguage) -> Itera
             "✔" if setting.current else "",
             time_in_force(setting.since, setting.until, words) or words.say("always"),
             code(setting.book),
+            escaped(setting.cite),
             escaped(setting.note),
         ]
 
@@ -217,8 +218,8 @@ def _definitions_section(inherited: BookLineage, words: DocumentLanguage) -> Ite
         before = [words.say("in {} {}", code(value.book), code(value.written)) for value in earlier]
         now = words.say("{} is defined by {}.", code(definition.name), code(last.book))
         was = words.say(" It was {}.", listed(before, words.language)) if before else ""
-        note = f" {escaped(last.note)}" if last.note else ""
-        yield f"{now}{was}{note}"
+        notes = [f" {escaped(text)}" for text in (last.cite and f"{last.cite}.", last.note) if text]
+        yield f"{now}{was}{''.join(notes)}"
         written = f"define {definition.head} = {last.text}"
         if len(written) > WIDTH:
             meaning = "\n  ".join(formula_lines(last.text, WIDTH - 2))
