@@ -131,7 +131,7 @@ def test_who_is_alone_is_scored_until_the_horizon():
 def test_assumptions_hold_for_trajectories_too():
     recorded = world()
     plain = rulec.load_scenario(recorded, rulec.Choice(ego="ego", at_s=1.0))
-    assumed = rulec.Assumptions(values={"ego_mass": 1.5, "ego_tows": False})
+    assumed = rulec.Assumptions(values={"headlamps": "dipped_beam", "visibility": 1000.0})
     judged = []
     for assumptions in (None, assumed):
         found = rulec.find_maneuvers(plain, "de", assumptions=assumptions)

@@ -26,11 +26,11 @@ from rulec.monitoring.verdict import (
     OpenReasons,
     OpenVerdict,
     RuleFor,
-    RuleNotJudged,
     Verdict,
     Violation,
     rule_for,
 )
+from rulec.trace.plain_arrays import distinct
 
 ViolationOrOpen: TypeAlias = Violation | OpenVerdict
 
@@ -51,8 +51,7 @@ class JudgedTrace(NamedTuple):
 
     def nameless(self) -> Verdict:
         """The verdict on it, without its name and the values presumed of it."""
-        violations, doubtful = self.findings.of(self.number)
-        return Verdict("", violations, doubtful, self.findings.not_judged(self.number))
+        return replace(self.findings.verdict(self.number, "", lambda _: False), presumed=())
 
 
 class Reasons(NamedTuple):
@@ -78,6 +77,17 @@ class RuleFindings:
     begins: NDArray[intp]
     objects: Sequence[NDArray[intp]]
     reasons: Reasons | None
+
+    def part(self, rows: NDArray[intp]) -> RuleFindings:
+        """Some of the choices."""
+        return replace(
+            self,
+            answers=[self.answers[row] for row in rows.tolist()],
+            places=[self.places[row] for row in rows.tolist()],
+            traces=self.traces[rows],
+            begins=self.begins[rows],
+            objects=[items[rows] for items in self.objects],
+        )
 
 
 class ChargedTraces(NamedTuple):
@@ -106,15 +116,27 @@ class Findings:
         self._names = names
         self._whole = whole
         self._of_rules: list[RuleFindings] = []
+        self._unknown: dict[int, set[str]] = defaultdict(set)
         self._single: dict[int, list[tuple[Place, ViolationOrOpen]]] = defaultdict(list)
 
     def add(self, rule_findings: RuleFindings) -> None:
         """Add the findings about a rule."""
-        self._of_rules.append(rule_findings)
+        rule, traces = rule_findings.rule.name, rule_findings.traces
+        if rule not in self._rules.lacking:
+            self._of_rules.append(rule_findings)
+            return
+        broken = np.array([x.best == VIOLATED for x in rule_findings.answers], dtype=bool)
+        for trace in distinct(traces[~broken]).tolist():
+            self._unknown[trace].add(rule)
+        if broken.any():
+            self._of_rules.append(rule_findings.part(broken.nonzero()[0]))
 
     def add_single(self, trace: int, place: Place, finding: ViolationOrOpen) -> None:
         """Add the finding about one choice of objects of a trace."""
-        self._single[trace].append((place, finding))
+        if finding.rule in self._rules.lacking and isinstance(finding, OpenVerdict):
+            self._unknown[trace].add(finding.rule)
+        else:
+            self._single[trace].append((place, finding))
 
     def forget_reasons(self) -> None:
         """Discard the reasons for open verdicts, which keep all values of the traces alive."""
@@ -183,11 +205,10 @@ class Findings:
         if number in self._whole:
             return Verdict(name, violations)
         presumed = tuple([own for own in self._rules.presumed if not says(own)])
-        return Verdict(name, violations, doubtful, self._rules.not_judged, presumed)
-
-    def not_judged(self, number: int) -> tuple[RuleNotJudged, ...]:
-        """The rules that cannot be judged because the trace lacks values."""
-        return () if number in self._whole else self._rules.not_judged
+        unknown = self._unknown.get(number, set())
+        not_judged, regardless = self._rules.unanswered(unknown, violations)
+        own = Verdict(name, violations, doubtful, not_judged, presumed)
+        return replace(own, kept_regardless=regardless)
 
     def of(self, number: int) -> tuple[tuple[Violation, ...], tuple[OpenVerdict, ...]]:
         """The violations of a trace, and its open verdicts."""

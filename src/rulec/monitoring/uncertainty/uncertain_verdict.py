@@ -73,18 +73,23 @@ class UncertainRun:
         """
         violations: list[Violation] = []
         doubtful: list[OpenVerdict] = []
+        unknown: set[str] = set()
         for rule, machine in self.judged.machines:
-            for answer in self._answers(rule, machine):
-                if isinstance(answer, Violation):
-                    violations.append(answer)
-                else:
-                    doubtful.append(answer)
+            answers = list(self._answers(rule, machine))
+            broken = [answer for answer in answers if isinstance(answer, Violation)]
+            violations += broken
+            if rule.name not in self.judged.lacking:
+                doubtful += [answer for answer in answers if isinstance(answer, OpenVerdict)]
+            elif answers:
+                unknown.add(rule.name)
+        not_judged, regardless = self.judged.unanswered(unknown, violations)
         return Verdict(
             self.trace.id,
             tuple(violations),
             tuple(doubtful),
-            self.judged.not_judged,
+            not_judged,
             presumed_in(self.trace, self.judged.presumed),
+            kept_regardless=regardless,
         )
 
     def view(self, number: int) -> StateView:

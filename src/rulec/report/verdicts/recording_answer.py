@@ -66,7 +66,7 @@ class RecordingAnswer:
         own = verdicts.rules
         rules: Sequence[Rule] = [*own.rules, *own.too_large]
         self._rules = {rule.name: rule for rule in rules}
-        self._judged = {*+tally.judged_in, *tally.first_s}
+        self._judged = tally.with_answer
 
     def as_text(self) -> str:
         """What was found, in how much nothing was found, and what could not be judged."""
@@ -164,6 +164,7 @@ class RecordingAnswer:
         if not names:
             return
         text = f"{len(names):,} of {counted(len(self._rules), 'rule')} not judged"
+        text += " in some drive" if any(self._tally.judged_in[name] for name in names) else ""
         left = {name: tuple(self._tally.untold.get(name, ())) for name in names}
         parts: list[str] = []
         while left and len(parts) < MOST_COUNTED:
