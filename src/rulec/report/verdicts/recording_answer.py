@@ -263,7 +263,9 @@ class RecordingAnswer:
         for rule, outcome in tally.outcomes(self._rules).items():
             by_outcome.setdefault(outcome, []).append(rule)
         about = ", without an opportunity to violate them (as in `rulec rates`)"
-        for outcome, what in (("nothing found", ""), ("idle", about)):
+        more: dict[RuleOutcome, str] = {"nothing found": "", "idle": about}
+        more["kept regardless"] = " of the words that the recording lacks"
+        for outcome, what in more.items():
             if names := by_outcome.get(outcome):
                 yield from self._wrapped(f"{outcome}{what}: {', '.join(names)}")
         vocabulary = verdicts.rules.vocabulary

@@ -11,10 +11,12 @@ from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.verdict import Verdict, VerdictOutcome
 
-RuleOutcome: TypeAlias = Literal["found", "nothing found", "idle", "open", "not judged"]
+RuleOutcome: TypeAlias = Literal[
+    "found", "nothing found", "idle", "kept regardless", "open", "not judged"
+]
 """What became of a rule in drives: violated in some; else open in some; else judged in some,
-without a violation; judged, but none of them gave an opportunity to violate it; not judged in some,
-and kept in the others whatever their source does not tell."""
+without a violation; judged, but none of them gave an opportunity to violate it; kept in all
+whatever their source does not tell; kept so in some, and not judged in the others."""
 
 
 @dataclass(slots=True)
@@ -82,6 +84,8 @@ class ViolationTally:
             return "open"
         if rule not in self.with_answer:
             return "not judged"
+        if self.judged_in[rule] == self.regardless_in[rule]:
+            return "kept regardless"
         return "idle" if self.judged_in[rule] == self.idle_in[rule] else "nothing found"
 
     def add(
