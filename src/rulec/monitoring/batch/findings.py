@@ -30,7 +30,6 @@ from rulec.monitoring.verdict import (
     Violation,
     rule_for,
 )
-from rulec.trace.plain_arrays import distinct
 
 ViolationOrOpen: TypeAlias = Violation | OpenVerdict
 
@@ -78,17 +77,6 @@ class RuleFindings:
     objects: Sequence[NDArray[intp]]
     reasons: Reasons | None
 
-    def part(self, rows: NDArray[intp]) -> RuleFindings:
-        """Some of the choices."""
-        return replace(
-            self,
-            answers=[self.answers[row] for row in rows.tolist()],
-            places=[self.places[row] for row in rows.tolist()],
-            traces=self.traces[rows],
-            begins=self.begins[rows],
-            objects=[items[rows] for items in self.objects],
-        )
-
 
 class ChargedTraces(NamedTuple):
     """Traces that do not keep a rule, one per choice of objects, and which of them violate it."""
@@ -105,41 +93,37 @@ _Row: TypeAlias = tuple[RuleFindings, int, int, Place]
 class Findings:
     """The findings on numbered traces for ``rules``; ``names`` are those of the objects.
 
-    Everything is known about the traces that are ``whole``.
+    Everything is known about the traces that are ``whole``. ``lacked`` finds the rules among those
+    that lack names that are doubtful in each trace, once a verdict is asked for.
     """
 
     def __init__(
-        self, rules: JudgedRules, n_traces: int, names: Sequence[str], whole: Set[int]
+        self,
+        rules: JudgedRules,
+        n_traces: int,
+        names: Sequence[str],
+        whole: Set[int],
+        lacked: Callable[[], Mapping[int, Set[str]]],
     ) -> None:
         self.n_traces = n_traces
         self._rules = rules
         self._names = names
         self._whole = whole
         self._of_rules: list[RuleFindings] = []
-        self._unknown: dict[int, set[str]] = defaultdict(set)
+        self._lacked: list[Callable[[], Mapping[int, Set[str]]]] = [lacked]
         self._single: dict[int, list[tuple[Place, ViolationOrOpen]]] = defaultdict(list)
 
     def add(self, rule_findings: RuleFindings) -> None:
         """Add the findings about a rule."""
-        rule, traces = rule_findings.rule.name, rule_findings.traces
-        if rule not in self._rules.lacking:
-            self._of_rules.append(rule_findings)
-            return
-        broken = np.array([x.best == VIOLATED for x in rule_findings.answers], dtype=bool)
-        for trace in distinct(traces[~broken]).tolist():
-            self._unknown[trace].add(rule)
-        if broken.any():
-            self._of_rules.append(rule_findings.part(broken.nonzero()[0]))
+        self._of_rules.append(rule_findings)
 
     def add_single(self, trace: int, place: Place, finding: ViolationOrOpen) -> None:
         """Add the finding about one choice of objects of a trace."""
-        if finding.rule in self._rules.lacking and isinstance(finding, OpenVerdict):
-            self._unknown[trace].add(finding.rule)
-        else:
-            self._single[trace].append((place, finding))
+        self._single[trace].append((place, finding))
 
     def forget_reasons(self) -> None:
         """Discard the reasons for open verdicts, which keep all values of the traces alive."""
+        _ = self._doubtful
         self._of_rules = [replace(own, reasons=None) for own in self._of_rules]
         self.__dict__.pop("_by_trace", None)
 
@@ -205,8 +189,7 @@ class Findings:
         if number in self._whole:
             return Verdict(name, violations)
         presumed = tuple([own for own in self._rules.presumed if not says(own)])
-        unknown = self._unknown.get(number, set())
-        not_judged, regardless = self._rules.unanswered(unknown, violations)
+        not_judged, regardless = self._rules.unanswered(self._doubtful.get(number, set()))
         own = Verdict(name, violations, doubtful, not_judged, presumed)
         return replace(own, kept_regardless=regardless)
 
@@ -221,6 +204,11 @@ class Findings:
         if number in self._whole:
             return violations, ()
         return violations, tuple([result for result in findings if isinstance(result, OpenVerdict)])
+
+    @cached_property
+    def _doubtful(self) -> Mapping[int, Set[str]]:
+        # What finds them keeps all values of the traces alive
+        return self._lacked.pop()() if self._rules.lacking else {}
 
     @cached_property
     def _by_trace(self) -> dict[int, list[_Row]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -13,7 +13,7 @@ from rulec.logic.free_names import names_of
 from rulec.monitoring.implied_values import without_calculations
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
 from rulec.monitoring.uncertainty.untold_names import untold_names, untold_types, with_untold
-from rulec.monitoring.verdict import RuleNotJudged, Violation
+from rulec.monitoring.verdict import RuleNotJudged
 from rulec.vocabulary import Vocabulary
 
 
@@ -22,7 +22,7 @@ class JudgedRules:
     """The rules with their machines, and those that no trace can be known to violate.
 
     Of these, the ``lacking`` ones have a machine: a trace keeps them whatever the names are that
-    they lack, or they are not judged (or violated, if facts tell what the source does not).
+    they lack, or they are not judged.
     ``rulebook`` has the other rules that have a machine, and unknown defaults for names that the
     source cannot provide; ``presumed`` are the names that rules read and that keep their defaults
     where no source provides them.
@@ -34,17 +34,14 @@ class JudgedRules:
     rulebook: CompiledRulebook
     presumed: tuple[str, ...]
 
-    def unanswered(
-        self, doubtful: Set[str], violations: Iterable[Violation]
-    ) -> tuple[tuple[RuleNotJudged, ...], tuple[str, ...]]:
+    def unanswered(self, doubtful: Set[str]) -> tuple[tuple[RuleNotJudged, ...], tuple[str, ...]]:
         """The rules that are not judged in a trace, and the lacking ones that it keeps regardless.
 
         Some lacking ones are ``doubtful`` in it: kept or not, as what is not told may be.
         """
-        broken = {violation.rule for violation in violations}
-        kept = self.lacking - doubtful - broken
+        kept = self.lacking - doubtful
         return (
-            tuple([x for x in self.unknowable if x.rule not in kept and x.rule not in broken]),
+            tuple([x for x in self.unknowable if x.rule not in kept]),
             tuple([x.rule for x in self.unknowable if x.rule in kept]),
         )
 
