@@ -64,6 +64,7 @@ def test_the_documented_line_of_json(verify):
         "judged": ["R1", "R2", "R3"],
         "open": [],
         "not_judged": [],
+        "kept_regardless": [],
         "presumed": [],
     }
 
@@ -81,6 +82,7 @@ def test_satisfied(verify):
         "judged": ["R1", "R2", "R3"],
         "open": [],
         "not_judged": [],
+        "kept_regardless": [],
         "presumed": [],
     }
 

@@ -150,3 +150,19 @@ def test_each_rule_has_one_outcome():
     }
     # Open in one drive is open, whatever was found in others
     assert counted.outcomes(("torn",)) == {"torn": "open"}
+
+
+def test_a_rule_is_not_judged_where_only_some_drives_keep_it_whatever_is_not_told():
+    rules, missing = ("foggy",), RuleNotJudged("foggy", "hard", ("visibility",))
+    kept = DriveVerdict(drive("1"), Verdict("1", (), kept_regardless=("foggy",)))
+    asked = DriveVerdict(drive("2"), Verdict("2", (), (), (missing,)))
+    counted = ViolationTally()
+    counted.add(kept, rules)
+    assert counted.outcomes(rules) == {"foggy": "kept regardless"}
+    assert counted.with_answer == {"foggy"}
+    counted.add(asked, rules)
+    assert counted.outcomes(rules) == {"foggy": "not judged"}
+    assert counted.with_answer == set()
+    # Where a third one tells of fog, it can be found to be violated
+    counted.add(verdict(drive("3")), rules)
+    assert counted.outcomes(rules) == {"foggy": "nothing found"}

@@ -60,10 +60,10 @@ def test_every_recording_of_a_table_is_judged_by_itself(findings):
     assert drives == [
         ("r000", "a", "violated"),
         ("r000", "b", "violated"),
-        ("r000", "c", "open"),
+        ("r000", "c", "kept"),
         ("r001", "a", "violated"),
-        ("r001", "b", "open"),
-        ("r001", "c", "open"),
+        ("r001", "b", "kept"),
+        ("r001", "c", "kept"),
     ]
     lost = rows_of(findings, "finding", "recording", "vehicle", "rule", "other", "outcome")
     assert [row for row in lost if row[-1] == "violated"] == [
@@ -178,7 +178,7 @@ def test_a_recording_that_cannot_be_read_is_reported_and_the_next_is_judged(tabl
     drives = rows_of(found, "drive", "recording", "outcome", "because")
     assert drives[0][:2] == ("r000", "not_judged")
     assert "nobody is near the roads" in drives[0][2]
-    assert [row[:2] for row in drives[1:]] == [("r001", x) for x in ("violated", "open", "open")]
+    assert [row[:2] for row in drives[1:]] == [("r001", x) for x in ("violated", "kept", "kept")]
 
 
 def with_no_text(table, name, row, *, packed):

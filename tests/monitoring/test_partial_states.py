@@ -219,11 +219,12 @@ hard rule go { require never (dark and moves) }
 def test_no_rule_is_kept_because_of_a_value_that_a_source_never_says(told, judged):
     compiled = rulec.compile_rulebook(parse_rulebook(LAMPS))
     found = judged_rules(compiled, frozenset(told), cut=True)
-    assert [rule.name for rule, _ in found.machines] == judged
-    lacking = {one.rule: one.untold for one in found.not_judged}
+    assert [rule.name for rule in found.rulebook.rules] == judged
+    lacking = {one.rule: one.untold for one in found.unknowable}
     assert "stop" in judged or lacking["stop"] in {("red", "cross"), ("light",)}
     assert "closed" in judged or lacking["closed"] in {("cross",), ("light",)}
-    state = {"light": "green", "moves": True}
+    said = {"light": "green", "moves": True}
+    state = {name: value for name, value in said.items() if name in told}
     trace = Trace("t", 1.0, {}, (state, state), told=frozenset(told))
     verdict = verify(trace, compiled)
     assert {one.rule for one in verdict.not_judged} == {"closed", "stop", "go"} - {*judged}
@@ -272,7 +273,7 @@ def test_a_duty_of_many_steps_is_found_to_be_one_that_q_alone_violates(monkeypat
 
     step = untold_names.RequiredNames._step
     monkeypatch.setattr(untold_names.RequiredNames, "_step", counted)
-    assert judged_rules(compiled, frozenset({"q"}), cut=True).not_judged == ()
+    assert judged_rules(compiled, frozenset({"q"}), cut=True).unknowable == ()
     # As many as the duty has steps, once or twice.
     assert 200 <= len(steps) <= 1000
 
@@ -292,7 +293,8 @@ def test_large_machines_are_asked_in_another_way_with_the_same_answer(whole, cha
         patch.setattr(uncertain_machine, "_PREPARED", {})
         found = judged_rules(replace(compiled), told, cut=True)
     assert [rule.name for rule, _ in found.machines] == [rule.name for rule, _ in usual.machines]
-    assert found.not_judged == usual.not_judged
+    assert found.unknowable == usual.unknowable
+    assert found.lacking == usual.lacking
 
 
 def test_what_a_source_cannot_tell_is_unknown_though_it_has_a_default():

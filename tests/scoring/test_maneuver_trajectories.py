@@ -131,7 +131,7 @@ def test_who_is_alone_is_scored_until_the_horizon():
 def test_assumptions_hold_for_trajectories_too():
     recorded = world()
     plain = rulec.load_scenario(recorded, rulec.Choice(ego="ego", at_s=1.0))
-    assumed = rulec.Assumptions(values={"ego_mass": 1.5, "ego_tows": False})
+    assumed = rulec.Assumptions(values={"headlamps": "dipped_beam", "visibility": 1000.0})
     judged = []
     for assumptions in (None, assumed):
         found = rulec.find_maneuvers(plain, "de", assumptions=assumptions)
@@ -148,6 +148,43 @@ def test_an_ego_of_a_planning_problem_begins_to_drive():
     scores = rulec.score_trajectories(found, found.cheapest(1, perhaps=True))
     assert scores.paths[0, 0, 0] == pytest.approx(20, abs=2)
     assert not scores.candidates[0].off_road
+
+
+WITHIN = """rulebook within
+use road
+hard rule slowly { require always (speed >= 1 km/h implies speed <= 90 km/h) }
+hard rule slower { require always (motorway implies speed <= 1 km/h) }
+hard rule far (v: vehicle) { require always (tunnel and beside(v) implies speed <= 1 km/h) }
+"""
+
+
+@pytest.mark.parametrize(
+    ("rules", "lawful", "kept", "undecided"),
+    [
+        # Nobody knows whether it is a motorway, and nobody is beside ego
+        (WITHIN, True, ("slowly",), ()),
+        (WITHIN.replace("motorway", "speed >= 1 km/h and tunnel"), True, ("slowly",), ()),
+        # At a speed that only an unknown word could allow
+        (
+            WITHIN.replace("motorway implies", "speed >= 1 km/h implies tunnel or"),
+            False,
+            None,
+            ("slower",),
+        ),
+        # Silence is no lawfulness
+        (WITHIN.replace("speed >= 1 km/h", "tunnel"), False, (), ()),
+    ],
+)
+def test_lawful_is_who_keeps_each_rule_that_is_surely_met(tmp_path, rules, lawful, kept, undecided):
+    (tmp_path / "within.rules").write_text(rules)
+    scene = rulec.load_scenario(world(), rulec.Choice(ego="ego", at_s=1.0))
+    found = rulec.find_maneuvers(scene, tmp_path / "within.rules")
+    (listed,) = found.cheapest(1, perhaps=True)
+    scores = trajectory_scores(found, [listed])
+    assert (listed.nodes in scores.lawful) is lawful
+    assert scores.tested[listed.nodes].undecided == undecided
+    if kept is not None:
+        assert scores.tested[listed.nodes].kept == kept
 
 
 def test_what_has_no_trajectory_is_refused():
@@ -169,12 +206,17 @@ def test_the_command_tells_the_verdict(capsys):
     assert main([*command, "--list", "2"]) == 0
     told = capsys.readouterr().out
     assert told.count("   trajectory: ") == 2
-    assert f"   trajectory: {lost}\n" in told
+    assert f"   trajectory: {lost};" in told
     main([*command, "--list", "2", "--json"])
-    listed = json.loads(capsys.readouterr().out)["maneuvers"]
-    verdicts = [maneuver["trajectory"]["verdict"] for maneuver in listed]
-    lawful = sum(verdict["satisfied"] is True for verdict in verdicts)
-    assert f"trajectories {lawful} of the 2 shown satisfy every hard rule" in told
+    found = json.loads(capsys.readouterr().out)
+    verdicts = [maneuver["trajectory"]["verdict"] for maneuver in found["maneuvers"]]
+    lawful = sum(verdict["lawful"] for verdict in verdicts)
+    assert f"lawful      {lawful} of 2 tried" in told
+    counts = [found[name] for name in ("free", "lawful", "closed", "undecided")]
+    assert (sum(counts), counts[1]) == (found["traces"], lawful)
+    # Who violates a rule has met it; it is not among those that it keeps
+    assert not verdicts[0]["lawful"]
+    assert "following_distance" not in verdicts[0]["kept"]
     (violation,) = verdicts[0]["violations"]
     assert (violation["rule"], violation["binding"]) == ("following_distance", {"v": "2"})
     assert (violation["lost_s"], verdicts[0]["until_s"]) == (2.5, 4.0)

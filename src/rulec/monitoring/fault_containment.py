@@ -102,6 +102,7 @@ def without(verdict: Verdict, lost: Sequence[RuleNotJudged], faults: list[RulecE
         violations=tuple([x for x in verdict.violations if x.rule not in names]),
         open=tuple([x for x in verdict.open if x.rule not in names]),
         not_judged=(*[x for x in verdict.not_judged if x.rule not in names], *lost),
+        kept_regardless=tuple([x for x in verdict.kept_regardless if x not in names]),
         faults=tuple(dict.fromkeys((*verdict.faults, *faults))),
     )
 
@@ -121,6 +122,7 @@ def _joined(one: Answer, other: Answer) -> Answer:
         open=(*one.open, *other.open),
         not_judged=tuple(not_judged.values()),
         presumed=tuple(dict.fromkeys((*one.presumed, *other.presumed))),
+        kept_regardless=(*one.kept_regardless, *other.kept_regardless),
         faults=(*one.faults, *other.faults),
     )
 

@@ -143,7 +143,8 @@ class Verdict(Rows):
     """The verdict of a rulebook: what a trace certainly violates, by rule and objects.
 
     ``open`` depends on something unknown, ``not_judged`` lists rules for which this source lacks
-    values. ``presumed`` are names that have their default because no source provides them.
+    values; for those ``kept_regardless`` it lacks values, too, but the trace keeps them whatever
+    these are. ``presumed`` are names that have their default because no source provides them.
     ``law`` is the text that was judged by.
     ``faults`` are those of rulec that came meanwhile; the rules that they cost are among the
     ``not_judged``.
@@ -156,6 +157,7 @@ class Verdict(Rows):
     open: tuple[OpenVerdict, ...] = ()
     not_judged: tuple[RuleNotJudged, ...] = ()
     presumed: tuple[str, ...] = ()
+    kept_regardless: tuple[str, ...] = ()
     law: Edition | None = field(default=None, compare=False, repr=False)
     faults: tuple[RulecError, ...] = field(default=(), compare=False, repr=False)
 
@@ -244,7 +246,16 @@ def agreed_by_type(known: Verdict, others: Sequence[tuple[Sequence[str], Verdict
         for result in pair.open:
             key = rule_for(result)
             doubtful[key] = _either(doubtful.get(key, result), result)
-    return replace(known, violations=tuple(violations.values()), open=tuple(doubtful.values()))
+    unknown = {
+        x.rule: x for verdict in (known, *[x for _, x in others]) for x in verdict.not_judged
+    }
+    return replace(
+        known,
+        violations=tuple(violations.values()),
+        open=tuple(doubtful.values()),
+        not_judged=tuple(unknown.values()),
+        kept_regardless=tuple([rule for rule in known.kept_regardless if rule not in unknown]),
+    )
 
 
 def _either(one: OpenVerdict, other: OpenVerdict) -> OpenVerdict:

@@ -13,10 +13,14 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cell_words.ego_boxes import body_size
 from rulec.cell_words.probe_drives import driver
+from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.monitoring.moments.drive_facts import facts_of
+from rulec.monitoring.verdict import Verdict
 from rulec.partition.motion.witness_trajectory import WitnessTrajectory
 from rulec.planning import Maneuvers
 from rulec.planning.ranking.cheapest import Maneuver
@@ -39,8 +43,19 @@ _ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
+class TestedRules:
+    """The hard rules whose trigger a trajectory surely meets: those kept, and the undecided ones.
+
+    A rule without a trigger is met by all.
+    """
+
+    kept: tuple[str, ...]
+    undecided: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class TrajectoryScores:
-    """The scores of maneuvers' trajectories, by the maneuvers' nodes.
+    """The scores of maneuvers' trajectories and the rules that these meet, by the maneuvers' nodes.
 
     Violations are those of states ``step_s`` (s) apart, the first one after the scene's beginning;
     the last one is at ``until_s`` (s). ``is_cut`` if the recording ends before the horizon.
@@ -50,6 +65,20 @@ class TrajectoryScores:
     until_s: float
     is_cut: bool
     of: Mapping[tuple[int, ...], CandidateScore]
+    tested: Mapping[tuple[int, ...], TestedRules]
+
+    @property
+    def lawful(self) -> frozenset[tuple[int, ...]]:
+        """The maneuvers whose trajectory keeps each hard rule that it meets, and meets some."""
+        return frozenset(
+            nodes
+            for nodes, score in self.of.items()
+            if score.is_judged
+            and not score.off_road
+            and self.tested[nodes].kept
+            and not self.tested[nodes].undecided
+            and all(violation.strength == "soft" for violation in score.violations)
+        )
 
     def time_s(self, step: int) -> float:
         """The time (s) of a state of a trajectory."""
@@ -69,8 +98,25 @@ def trajectory_scores(maneuvers: Maneuvers, listed: Sequence[Maneuver]) -> Traje
     scores = score_trajectories(maneuvers, driven)
     found = zip(driven, scores.candidates, strict=True)
     of = {maneuver.nodes: candidate for maneuver, candidate in found}
+    tested = {nodes: _tested(candidate, scores.rules) for nodes, candidate in of.items()}
     until_s = round(n_states * step_s, 6)
-    return TrajectoryScores(step_s, until_s, until_s < _horizon_s(maneuvers) - step_s, of)
+    return TrajectoryScores(step_s, until_s, until_s < _horizon_s(maneuvers) - step_s, of, tested)
+
+
+def _tested(score: CandidateScore, rules: CompiledRulebook) -> TestedRules:
+    """The hard rules that a trajectory, with its past, surely meets."""
+    met: set[str] = set()
+    for own in score.drives:
+        if isinstance(own, DriveVerdict) and isinstance(own.answer, Verdict):
+            exposures = facts_of(own.drive.arrays, rules, Verdict("", ())).exposure
+            met |= {name for name, own in exposures.items() if own.opportunities}
+    doubtful = {x.rule for x in score.open}.union(x.rule for x in score.not_judged)
+    broken = {violation.rule for violation in score.violations}
+    tested = [x.name for x in rules.rules if x.strength == "hard" and x.name in met - broken]
+    return TestedRules(
+        tuple([name for name in tested if name not in doubtful]),
+        tuple([name for name in tested if name in doubtful]),
+    )
 
 
 def _scored_states(maneuvers: Maneuvers) -> int:

@@ -1,19 +1,26 @@
 """A name that is unknown itself is unknown of every object, whoever reads it."""
 
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
+from hypothesis import Phase, given, settings
 
 from rulec import compile_rulebook
+from rulec.diagnostics import RulecError
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import verify_chunk
 from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.explain.explanation import explain
+from rulec.monitoring.verdict import RuleNotJudged, Verdict
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.rulebooks import compile_here
+from support.generators.random_rulebooks import rulebook
+from support.generators.random_traces import traces
+from support.generators.seeds import seeds
 
 BOOK = parse_rulebook(
     """rulebook gaps
@@ -146,6 +153,47 @@ def test_of_bounds_the_end_counts_by_which_a_rule_is_rather_kept(
         inside.values if always.text.startswith("always") else tuple(not x for x in inside.values)
     )
     assert kept == (shown, False)
+
+
+def test_a_rule_is_kept_where_what_is_not_told_could_change_nothing():
+    """Nobody knows whether it rains; at most 10 m ahead of nobody, it does not matter."""
+    text = (
+        "rulebook wet signal rain default false quantity room in m default 9 "
+        "hard rule slippery { require never (rain and room < 5 m) }"
+    )
+    rules = compile_rulebook(parse_rulebook(text))
+    told = frozenset({"room"})
+    far, near = (Trace("t", 1.0, {}, ({"room": 9.0}, {"room": x}), told=told) for x in (7.0, 3.0))
+    assert verify(far, rules) == Verdict("t", (), kept_regardless=("slippery",))
+    assert verify(far, rules).satisfied is True
+    lacking = RuleNotJudged("slippery", "hard", ("rain",))
+    assert verify(near, rules) == Verdict("t", (), not_judged=(lacking,))
+    assert verify(near, rules).satisfied is None
+
+
+@given(seeds)
+@settings(phases=[Phase.generate])
+def test_what_is_not_told_is_as_what_is_unknown_in_every_state(chance):
+    """But for values of a word that a source tells by others alone: of these nothing is kept."""
+    book = rulebook(chance, Fraction(1))
+    compiled = compile_here(book, Fraction(1))
+    declared = compiled.vocabulary.declarations
+    for trace in traces(chance, Fraction(1))[:3]:
+        told = frozenset(name for name in declared if chance.random() < 0.6)
+        states = [{x: state[x] for x in state if x in told} for state in trace.states]
+        untold = replace(trace, states=tuple(states), told=told)
+        unknown = dict.fromkeys(declared.keys() - told, UNKNOWN)
+        explicit = replace(untold, states=tuple([unknown | x for x in states]), told=None)
+        try:
+            found, other = verify(untold, compiled), verify(explicit, compiled)
+        except RulecError:
+            continue
+        # What facts tell in spite of the source does not make it known to violate a rule
+        lacking = {one.rule for one in found.not_judged}
+        assert found.violations == tuple([x for x in other.violations if x.rule not in lacking])
+        doubtful = {one.rule for one in (*other.open, *other.violations)}
+        assert {x.rule for x in (*found.open, *found.violations)} | lacking == doubtful
+        assert doubtful.isdisjoint(found.kept_regardless)
 
 
 def test_assumptions_are_about_what_is_not_told():

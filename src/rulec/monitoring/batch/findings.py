@@ -26,7 +26,6 @@ from rulec.monitoring.verdict import (
     OpenReasons,
     OpenVerdict,
     RuleFor,
-    RuleNotJudged,
     Verdict,
     Violation,
     rule_for,
@@ -51,8 +50,7 @@ class JudgedTrace(NamedTuple):
 
     def nameless(self) -> Verdict:
         """The verdict on it, without its name and the values presumed of it."""
-        violations, doubtful = self.findings.of(self.number)
-        return Verdict("", violations, doubtful, self.findings.not_judged(self.number))
+        return replace(self.findings.verdict(self.number, "", lambda _: False), presumed=())
 
 
 class Reasons(NamedTuple):
@@ -95,17 +93,24 @@ _Row: TypeAlias = tuple[RuleFindings, int, int, Place]
 class Findings:
     """The findings on numbered traces for ``rules``; ``names`` are those of the objects.
 
-    Everything is known about the traces that are ``whole``.
+    Everything is known about the traces that are ``whole``. ``lacked`` finds the rules among those
+    that lack names that are doubtful in each trace, once a verdict is asked for.
     """
 
     def __init__(
-        self, rules: JudgedRules, n_traces: int, names: Sequence[str], whole: Set[int]
+        self,
+        rules: JudgedRules,
+        n_traces: int,
+        names: Sequence[str],
+        whole: Set[int],
+        lacked: Callable[[], Mapping[int, Set[str]]],
     ) -> None:
         self.n_traces = n_traces
         self._rules = rules
         self._names = names
         self._whole = whole
         self._of_rules: list[RuleFindings] = []
+        self._lacked: list[Callable[[], Mapping[int, Set[str]]]] = [lacked]
         self._single: dict[int, list[tuple[Place, ViolationOrOpen]]] = defaultdict(list)
 
     def add(self, rule_findings: RuleFindings) -> None:
@@ -118,6 +123,7 @@ class Findings:
 
     def forget_reasons(self) -> None:
         """Discard the reasons for open verdicts, which keep all values of the traces alive."""
+        _ = self._doubtful
         self._of_rules = [replace(own, reasons=None) for own in self._of_rules]
         self.__dict__.pop("_by_trace", None)
 
@@ -183,11 +189,9 @@ class Findings:
         if number in self._whole:
             return Verdict(name, violations)
         presumed = tuple([own for own in self._rules.presumed if not says(own)])
-        return Verdict(name, violations, doubtful, self._rules.not_judged, presumed)
-
-    def not_judged(self, number: int) -> tuple[RuleNotJudged, ...]:
-        """The rules that cannot be judged because the trace lacks values."""
-        return () if number in self._whole else self._rules.not_judged
+        not_judged, regardless = self._rules.unanswered(self._doubtful.get(number, set()))
+        own = Verdict(name, violations, doubtful, not_judged, presumed)
+        return replace(own, kept_regardless=regardless)
 
     def of(self, number: int) -> tuple[tuple[Violation, ...], tuple[OpenVerdict, ...]]:
         """The violations of a trace, and its open verdicts."""
@@ -200,6 +204,11 @@ class Findings:
         if number in self._whole:
             return violations, ()
         return violations, tuple([result for result in findings if isinstance(result, OpenVerdict)])
+
+    @cached_property
+    def _doubtful(self) -> Mapping[int, Set[str]]:
+        # What finds them keeps all values of the traces alive
+        return self._lacked.pop()() if self._rules.lacking else {}
 
     @cached_property
     def _by_trace(self) -> dict[int, list[_Row]]:

@@ -92,7 +92,11 @@ def alike_exposures(
             items = tuple([item_of[item] for item in finding.binding.values()])
             outcome: Outcome = "violated" if isinstance(finding, Violation) else "open"
             outcomes.setdefault(finding.rule, {})[number, items] = outcome
-    left_out = [{rule.rule for rule in verdict.not_judged} for verdict in verdicts]
+    # Of a rule that no trace can be known to violate, those that keep it tell no rate
+    left_out = [
+        {*[rule.rule for rule in verdict.not_judged], *verdict.kept_regardless}
+        for verdict in verdicts
+    ]
     result: list[dict[str, Exposure]] = [{} for _ in verdicts]
     for watched in _watched(rulebook, exact_step(step_s)):
         rule = watched.rule

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, replace
+from itertools import chain
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import Read
 from rulec.automata.outcome_machine import OutcomeMachine, of_running_words
 from rulec.logic.free_names import names_of
 from rulec.monitoring.implied_values import without_calculations
@@ -17,17 +19,31 @@ from rulec.vocabulary import Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class JudgedRules:
-    """The rules that can be judged, with their machines, and those that cannot.
+    """The rules with their machines, and those that no trace can be known to violate.
 
-    ``rulebook`` has these rules alone, and unknown defaults for names that the source cannot
-    provide; ``presumed`` are the names that rules read and that keep their defaults where no source
-    provides them.
+    Of these, the ``lacking`` ones have a machine: a trace keeps them whatever the names are that
+    they lack, or they are not judged.
+    ``rulebook`` has the other rules that have a machine, and unknown defaults for names that the
+    source cannot provide; ``presumed`` are the names that rules read and that keep their defaults
+    where no source provides them.
     """
 
     machines: tuple[tuple[CompiledRule, UncertainMachine], ...]
-    not_judged: tuple[RuleNotJudged, ...]
+    unknowable: tuple[RuleNotJudged, ...]
+    lacking: frozenset[str]
     rulebook: CompiledRulebook
     presumed: tuple[str, ...]
+
+    def unanswered(self, doubtful: Set[str]) -> tuple[tuple[RuleNotJudged, ...], tuple[str, ...]]:
+        """The rules that are not judged in a trace, and the lacking ones that it keeps regardless.
+
+        Some lacking ones are ``doubtful`` in it: kept or not, as what is not told may be.
+        """
+        kept = self.lacking - doubtful
+        return (
+            tuple([x for x in self.unknowable if x.rule not in kept]),
+            tuple([x.rule for x in self.unknowable if x.rule in kept]),
+        )
 
     @property
     def vocabulary(self) -> Vocabulary:
@@ -40,8 +56,9 @@ def judged_rules(
 ) -> JudgedRules:
     """The rules for a source that provides these names, or all names if None.
 
-    Left out are rules that no trace can be known to violate, and those whose machine would be too
-    large for the step or for traces that are ``cut``. Raises RulecError R0403 if Spot, which builds
+    Without a machine are rules about objects of types that the source cannot tell, and those whose
+    machine would be too large for the step or for traces that are ``cut``. Raises RulecError R0403
+    if Spot, which builds
     the machines for these, is not installed. The result is cached, since it is needed for every
     trace.
     """
@@ -71,44 +88,53 @@ def _judged_rules(
 ) -> JudgedRules:
     unknown = untold_names(rulebook.vocabulary, told)
     types = untold_types(rulebook.vocabulary, told)
-
-    def untold_by(rule: CompiledRule, machine: OutcomeMachine | None) -> RuleNotJudged | None:
-        lacking = uncertain_machine(rule, machine).untold(unknown)
-        lacking = without_calculations(lacking, rulebook.vocabulary, unknown)
-        lacking += tuple([own.type for own in rule.variables if own.type in types])
-        return RuleNotJudged(rule.name, rule.strength, lacking) if lacking else None
-
-    # A machine for cut words is built only if some word without a past can violate the rule.
+    values = unknown - rulebook.vocabulary.declarations.keys()
+    # Before a machine for cut words is built, one without a past says whether it can be of use.
     running: dict[str, OutcomeMachine] = rulebook.prepared.setdefault(of_running_words, {})
     if cut and not running:
         running.update({rule.name: of_running_words(rule.machine) for rule in rulebook.rules})
-    left_out = {
-        rule.name: untold_by(rule, running[rule.name] if cut else None) for rule in rulebook.rules
-    }
+
+    def lack(rule: CompiledRule, outcomes: OutcomeMachine | None) -> tuple[str, ...]:
+        machine = uncertain_machine(rule, (outcomes or running[rule.name]) if cut else None)
+        names = without_calculations(machine.untold(unknown), rulebook.vocabulary, unknown)
+        return *names, *[own.type for own in rule.variables if own.type in types]
+
+    def may_look_kept(rule: CompiledRule) -> bool:
+        """Whether a state or an object that seems known may be one that the source never tells."""
+        read = [read.values for read in rule.machine.reads if isinstance(read, Read)]
+        hidden = types.union(values)
+        return not hidden.isdisjoint([*chain(*read), *[own.type for own in rule.variables]])
+
+    useless = {x.name for x in rulebook.rules if may_look_kept(x) and lack(x, None)}
     prefixes: Mapping[str, OutcomeMachine | None] = {}
     if cut and rulebook.prefixes is not None:
-        rules = tuple([rule for rule in rulebook.rules if left_out[rule.name] is None])
+        rules = tuple([rule for rule in rulebook.rules if rule.name not in useless])
         prefixes = rulebook.prefixes(replace(rulebook, rules=rules)) if rules else {}
     machines = []
-    not_judged = [
+    unknowable = [
         RuleNotJudged(rule.name, rule.strength, (), rule.why) for rule in rulebook.too_large
     ]
+    lacking = set()
     for rule in rulebook.rules:
-        outcomes, without = prefixes.get(rule.name), left_out[rule.name]
-        if cut and without is None:
-            why = _why_not_if_cut(rule, rulebook)
-            without = (
-                RuleNotJudged(rule.name, rule.strength, (), why)
-                if outcomes is None
-                else untold_by(rule, outcomes)
-            )
-        if without is None:
-            machines.append((rule, uncertain_machine(rule, outcomes)))
-        else:
-            not_judged.append(without)
+        outcomes = prefixes.get(rule.name)
+        untold = lack(rule, outcomes)
+        if (cut and outcomes is None) or (untold and may_look_kept(rule)):
+            why = "" if untold else _why_not_if_cut(rule, rulebook)
+            unknowable.append(RuleNotJudged(rule.name, rule.strength, untold, why))
+            continue
+        machines.append((rule, uncertain_machine(rule, outcomes)))
+        if untold:
+            unknowable.append(RuleNotJudged(rule.name, rule.strength, untold))
+            lacking.add(rule.name)
     declarations = rulebook.vocabulary.declarations
     read = {name for rule in rulebook.rules for name in names_of(rule.formula)}
     presumed = [name for name, item in declarations.items() if item.presumed and name in read]
     vocabulary = with_untold(rulebook.vocabulary, unknown)
-    judged = replace(rulebook, vocabulary=vocabulary, rules=tuple([rule for rule, _ in machines]))
-    return JudgedRules(tuple(machines), tuple(not_judged), judged, tuple(presumed))
+    judged = tuple([rule for rule, _ in machines if rule.name not in lacking])
+    return JudgedRules(
+        tuple(machines),
+        tuple(unknowable),
+        frozenset(lacking),
+        replace(rulebook, vocabulary=vocabulary, rules=judged),
+        tuple(presumed),
+    )

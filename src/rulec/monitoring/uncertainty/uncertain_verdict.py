@@ -13,6 +13,7 @@ from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED
+from rulec.diagnostics import RulecError
 from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
@@ -73,18 +74,24 @@ class UncertainRun:
         """
         violations: list[Violation] = []
         doubtful: list[OpenVerdict] = []
+        unknown: set[str] = set()
         for rule, machine in self.judged.machines:
+            if rule.name in self.judged.lacking:
+                unknown |= {rule.name} if self.is_doubtful(rule.name) else set()
+                continue
             for answer in self._answers(rule, machine):
                 if isinstance(answer, Violation):
                     violations.append(answer)
                 else:
                     doubtful.append(answer)
+        not_judged, regardless = self.judged.unanswered(unknown)
         return Verdict(
             self.trace.id,
             tuple(violations),
             tuple(doubtful),
-            self.judged.not_judged,
+            not_judged,
             presumed_in(self.trace, self.judged.presumed),
+            kept_regardless=regardless,
         )
 
     def view(self, number: int) -> StateView:
@@ -115,6 +122,13 @@ class UncertainRun:
             answer = self._answer(rule, machine, binding)
             if answer is not None:
                 yield answer
+
+    def is_doubtful(self, rule_name: str) -> bool:
+        """Whether a rule that lacks names is not surely kept, or its letters are contradictory."""
+        try:
+            return any(True for _ in self.answers(rule_name))
+        except RulecError:
+            return True
 
     def answers(self, rule_name: str) -> Iterator[Violation | OpenVerdict]:
         """The bindings of a rule that are violated or open."""

@@ -20,7 +20,7 @@ from rulec.planning.planning_messages import MOST_WORLDS
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.text.console import PAGE_WIDTH
-from rulec.report.text.terminal_text import broken, cut, shown_count, table_lines, visible
+from rulec.report.text.terminal_text import broken, counted, cut, shown_count, table_lines, visible
 from rulec.report.verdicts.verdict_report import about, open_in_words
 from rulec.rulebook.rulebook_model import cited_law
 
@@ -157,12 +157,14 @@ def listed_block(
 
 
 def driven_counts(driven: TrajectoryScores | None) -> list[str]:
-    """How many of the trajectories satisfy every hard rule, if there are several."""
-    if driven is None or len(driven.of) < 2:
+    """How many of the trajectories keep every hard rule whose trigger they meet."""
+    if driven is None:
         return []
-    lawful = sum(score.satisfied_as_judged is True for score in driven.of.values())
-    shown = f"{lawful} of the {len(driven.of)} shown"
-    return [f"trajectories {shown} satisfy every hard rule that can be judged"]
+    why = ": a trajectory keeps each hard rule put to the test" if driven.lawful else ""
+    rules = dict.fromkeys(rule for tested in driven.tested.values() for rule in tested.undecided)
+    if rules and not driven.lawful:
+        why = f": undecided on {first_of([*rules], MOST_NAMED)}"
+    return [visible(f"lawful      {len(driven.lawful)} of {len(driven.of)} tried{why}")]
 
 
 def _as_driven(maneuver: Maneuver, driven: TrajectoryScores | None) -> list[str]:
@@ -181,11 +183,13 @@ def _as_driven(maneuver: Maneuver, driven: TrajectoryScores | None) -> list[str]
     ]
     if violated:
         parts.append(f"violates {first_of(violated, MOST_NAMED)}")
-    if score.open:
-        open_rules = dict.fromkeys(open_verdict.rule for open_verdict in score.open)
-        parts.append(f"open: {first_of(list(open_rules), MOST_NAMED)}")
-    if score.satisfied_as_judged:
-        parts.insert(0, "satisfies every hard rule that can be judged")
+    tested = driven.tested[maneuver.nodes]
+    if tested.undecided:
+        parts.append(f"undecided on {first_of(tested.undecided, MOST_NAMED)}")
+    if maneuver.nodes in driven.lawful:
+        parts.insert(0, "lawful")
+    if tested.kept:
+        parts.append(f"keeps {counted(len(tested.kept), 'hard rule')} put to the test")
     until = f" until {driven.until_s:g} s" if driven.is_cut else ""
     return [visible(f"   trajectory{until}: {'; '.join(parts)}")]
 

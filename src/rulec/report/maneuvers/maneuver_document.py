@@ -59,11 +59,15 @@ class TrajectoryVerdictData(JsonPart, frozen=True, kw_only=True):
     """The verdict on a trajectory as a drive in the recorded world, up to ``until_s``.
 
     ``satisfied``, by the rules that can be judged, is null if no hard rule is violated and one is
-    open, or ego leaves the road in ``off_road`` of the recording's steps. A violation's ``lost_s``
-    is null if the end decides.
+    open, or ego leaves the road in ``off_road`` of the recording's steps. It is ``lawful`` if it
+    violates none, has ``kept`` some whose trigger it surely meets, and is ``undecided`` on none of
+    these. A violation's ``lost_s`` is null if the end decides.
     """
 
     satisfied: bool | None
+    lawful: bool
+    kept: Sequence[str]
+    undecided: Sequence[str]
     until_s: float
     violations: Sequence[ManeuverViolation]
     open: Sequence[OpenData]
@@ -198,6 +202,10 @@ class ClassesData(JsonPart, frozen=True, kw_only=True):
 class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     """The counts of maneuvers in a scenario, and the further answers requested.
 
+    ``free`` are those all of whose trajectories keep every hard rule (``satisfying``), ``closed``
+    those all of whose trajectories violate one (``violating``). Of the others, ``lawful`` are those
+    tried in a recorded scene whose trajectory keeps each hard rule whose trigger it surely meets,
+    and meets some; the rest is ``undecided``.
     For ``open`` maneuvers, besides those ``satisfying``, the verdict depends on ``unknown`` values;
     ``exact`` is false if there were too many cases to examine, so that some verdicts may be known
     after all. ``judged`` are the rules kept or violated for certain by at least half of the
@@ -219,6 +227,10 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     edges: int
     bounds: Mapping[str, float] | None
     traces: int
+    free: int
+    lawful: int
+    closed: int
+    undecided: int
     satisfying: int
     violating: int
     open: int

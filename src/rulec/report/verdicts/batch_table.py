@@ -47,7 +47,7 @@ class BatchTally:
         self.judged_recordings += 1
         self.outcomes.update({outcome: len(drives) for outcome, drives in tally.drives.items()})
         self.not_judged += len(tally.not_judged)
-        self.judged_in.update(tally.judged_in)
+        self.judged_in.update({rule: tally.judged_in[rule] for rule in tally.with_answer})
         self.open_in.update(dict.fromkeys(tally.open_rules, 1))
         for rule, times in tally.first_s.items():
             self.drives[rule] += len(times)

@@ -66,7 +66,7 @@ class RecordingAnswer:
         own = verdicts.rules
         rules: Sequence[Rule] = [*own.rules, *own.too_large]
         self._rules = {rule.name: rule for rule in rules}
-        self._judged = {*+tally.judged_in, *tally.first_s}
+        self._judged = tally.with_answer
 
     def as_text(self) -> str:
         """What was found, in how much nothing was found, and what could not be judged."""
@@ -164,6 +164,7 @@ class RecordingAnswer:
         if not names:
             return
         text = f"{len(names):,} of {counted(len(self._rules), 'rule')} not judged"
+        text += " in some drive" if any(self._tally.judged_in[name] for name in names) else ""
         left = {name: tuple(self._tally.untold.get(name, ())) for name in names}
         parts: list[str] = []
         while left and len(parts) < MOST_COUNTED:
@@ -262,7 +263,9 @@ class RecordingAnswer:
         for rule, outcome in tally.outcomes(self._rules).items():
             by_outcome.setdefault(outcome, []).append(rule)
         about = ", without an opportunity to violate them (as in `rulec rates`)"
-        for outcome, what in (("nothing found", ""), ("idle", about)):
+        more: dict[RuleOutcome, str] = {"nothing found": "", "idle": about}
+        more["kept regardless"] = " of the words that the recording lacks"
+        for outcome, what in more.items():
             if names := by_outcome.get(outcome):
                 yield from self._wrapped(f"{outcome}{what}: {', '.join(names)}")
         vocabulary = verdicts.rules.vocabulary

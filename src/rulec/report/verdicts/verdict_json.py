@@ -213,7 +213,8 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     """The verdict on a trace: whether it keeps every hard rule.
 
     ``satisfied`` is null if no hard rule is violated, but one is open or not judged. ``judged`` are
-    the rules that are neither. ``presumed`` names hold by presumption, as no source supplies them.
+    the rules that are neither; of these, ``kept_regardless`` read names that the source lacks, and
+    are kept whatever these are. ``presumed`` names hold by presumption, as no source supplies them.
     ``faults`` of rulec came meanwhile; rules that they cost are ``not_judged``.
     """
 
@@ -225,6 +226,7 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     judged: Sequence[str] = ()
     open: Sequence[OpenData] = ()
     not_judged: Sequence[NotJudgedRule] = ()
+    kept_regardless: Sequence[str] = ()
     presumed: Sequence[str] = ()
     faults: Sequence[ErrorData] | UnsetType = UNSET
 

@@ -11,9 +11,12 @@ from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.verdict import Verdict, VerdictOutcome
 
-RuleOutcome: TypeAlias = Literal["found", "nothing found", "idle", "open", "not judged"]
+RuleOutcome: TypeAlias = Literal[
+    "found", "nothing found", "idle", "kept regardless", "open", "not judged"
+]
 """What became of a rule in drives: violated in some; else open in some; else judged in some,
-without a violation; judged, but none of them gave an opportunity to violate it; judged in none."""
+without a violation; judged, but none of them gave an opportunity to violate it; kept in all
+whatever their source does not tell; kept so in some, and not judged in the others."""
 
 
 @dataclass(slots=True)
@@ -26,9 +29,10 @@ class ViolationTally:
     -> the missing names because of which it is not judged in some drive; ``reasons``: rule ->
     another reason. ``causes``: rule -> the objects that its violation is about -> the drives, so
     that many drives past one standing car are one finding. ``judged_in``: rule -> the number of
-    drives in which it is neither open nor not judged, ``idle_in`` of those with no opportunity to
-    violate it, if that has been looked for. ``words`` are the names of the signals that
-    every drive supplies. ``faults`` of rulec cost rules in some drives, or drives.
+    drives in which it is neither open nor not judged, ``regardless_in`` of those in which it is
+    kept whatever the words are that it lacks, ``idle_in`` of those with no opportunity to violate
+    it, if that has been looked for. ``words`` are the names of the signals that every drive
+    supplies. ``faults`` of rulec cost rules in some drives, or drives.
     """
 
     drives: dict[VerdictOutcome, list[str]] = field(default_factory=dict)
@@ -40,6 +44,7 @@ class ViolationTally:
     reasons: dict[str, str] = field(default_factory=dict)
     causes: dict[str, dict[tuple[str, ...], list[str]]] = field(default_factory=dict)
     judged_in: Counter[str] = field(default_factory=Counter)
+    regardless_in: Counter[str] = field(default_factory=Counter)
     idle_in: Counter[str] = field(default_factory=Counter)
     open_hard: int = 0
     words: frozenset[str] | None = None
@@ -49,6 +54,17 @@ class ViolationTally:
     def judged(self) -> int:
         """The number of drives that have a verdict."""
         return sum(map(len, self.drives.values()))
+
+    @property
+    def with_answer(self) -> set[str]:
+        """The rules that are judged, and not only in drives that would keep them anyway."""
+        unknown = self.untold.keys() | self.reasons.keys()
+        answered = {
+            rule
+            for rule, number in self.judged_in.items()
+            if number > (self.regardless_in[rule] if rule in unknown else 0)
+        }
+        return answered.union(self.first_s)
 
     def include(self, later: ViolationTally) -> None:
         """Add the counts of later drives."""
@@ -66,10 +82,11 @@ class ViolationTally:
             return "found"
         if rule in self.open_rules:
             return "open"
-        n_judged = self.judged_in[rule]
-        if not n_judged:
+        if rule not in self.with_answer:
             return "not judged"
-        return "idle" if n_judged == self.idle_in[rule] else "nothing found"
+        if self.judged_in[rule] == self.regardless_in[rule]:
+            return "kept regardless"
+        return "idle" if self.judged_in[rule] == self.idle_in[rule] else "nothing found"
 
     def add(
         self,
@@ -107,6 +124,7 @@ class ViolationTally:
         doubtful = {x.rule for x in answer.open} | {x.rule for x in answer.not_judged}
         judged = [rule for rule in rules if rule not in doubtful]
         self.judged_in.update(judged)
+        self.regardless_in.update(answer.kept_regardless)
         self.idle_in.update(idle.intersection(judged))
 
 

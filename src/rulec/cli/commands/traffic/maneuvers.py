@@ -31,6 +31,9 @@ from rulec.recordings.recording_inputs import InputFiles, input_files
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import page_width, print_remark
 
+_N_TRIED = 3
+"""Of so many maneuvers of a recorded scene the trajectories are judged, if none is shown."""
+
 
 @dataclass(frozen=True, slots=True)
 class ManeuverQuestions:
@@ -71,6 +74,7 @@ class ManeuverQuestions:
                 best = maneuvers.best()
         ranked = None if self.n_ranked is None else maneuvers.ranked(self.n_ranked)
         shown = [*(listed or ()), *(rank.maneuver for rank in (*(best or ()), *(ranked or ())))]
+        tried = shown or (maneuvers.cheapest(_N_TRIED, perhaps=True) if maneuvers.words else [])
         uncertain = any(obstacle.alternatives for obstacle in maneuvers.graph.scenario.obstacles)
         uncertain = uncertain or (self.worlds and form == "json")
         classes = None
@@ -85,13 +89,13 @@ class ManeuverQuestions:
             best=best,
             ranked=ranked,
             chances=_chances(maneuvers, shown) if uncertain else {},
-            verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or ()}
+            verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or tried}
             if maneuvers.in_doubt
             else {},
             worlds=lazy.alternative_counts(maneuvers) if self.worlds else None,
             prunings=maneuvers.prunings() if self.why else None,
             classes=classes,
-            driven=_driven(maneuvers, shown),
+            driven=_driven(maneuvers, tried),
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -76,21 +77,26 @@ class StackedRun:
         judged = self._ready.judged
         self._stack = Stack(traces, judged.vocabulary, self._ready.defaults)
         self._reader = StackReader(self._stack)
-        self._trace = traces.trace
-        self._closely: dict[int, _CloseLook] = {}
+        self._close = _CloseLooks(traces.trace, rules)
+        self._simple = self._ready.simple_rules(frozenset(self._stack.untold(self._ready.names)))
         whole: set[int] = set()
         if traces.kind.is_whole:
             whole = {*range(n_traces)} - self._stack.partial_traces()
-        self._findings = Findings(judged, n_traces, traces.names, frozenset(whole))
+        lacking = _LackingRules(self._ready, self._simple, self._reader, rules, self._close)
+        self._findings = Findings(
+            judged, n_traces, traces.names, frozenset(whole), lacking.doubtful
+        )
         self._reasons = StackedReasons(self._reader)
         self._odd: set[int] = set()
 
     def judged(self) -> list[JudgedTrace | None]:
         """The traces with their findings; None for those that must be judged by their states."""
-        simple = self._ready.simple_rules(frozenset(self._stack.untold(self._ready.names)))
+        simple = self._simple
         suspects = self._suspects(contradicted(simple.facts, self._reader))
         busy = simple.busy(self._reader)
         for number, rule in enumerate(self._ready.rules):
+            if rule.rule.name in self._ready.judged.lacking:
+                continue
             if number not in simple.rules:
                 self._add_closely(number, rule)
             elif number in busy or (rule.facts and suspects.any()):
@@ -145,19 +151,13 @@ class StackedRun:
             about = [int(own[place]) for own in instances.objects]
             self._add_odd(int(instances.traces[place]), rule, (rule_number, *about))
 
-    def _close(self, number: int) -> _CloseLook:
-        if number not in self._closely:
-            look = _CloseLook(partial(self._trace, number), self._rulebook)
-            self._closely[number] = look
-        return self._closely[number]
-
     def _add_odd(self, number: int, rule: CompiledRule, place: Place) -> None:
         """Add the outcome for a choice of objects that arrays cannot decide."""
         if number in self._odd:
             return
         binding = self._findings.binding(rule, place[1:])
         try:
-            finding = self._close(number).answer(rule.name, binding)
+            finding = self._close[number].answer(rule.name, binding)
         except RulecError:
             self._odd.add(number)
             return
@@ -167,7 +167,7 @@ class StackedRun:
     def _add_closely(self, rule_number: int, rule: StackedRule) -> None:
         for number in range(self._n_traces):
             try:
-                answers = self._close(number).answers(rule.rule.name)
+                answers = self._close[number].answers(rule.rule.name)
             except RulecError:
                 self._odd.add(number)
                 continue
@@ -190,9 +190,10 @@ class _SimpleRules:
     _busy: dict[tuple[int, ...], frozenset[int]] = field(default_factory=dict, init=False)
 
     @staticmethod
-    def of(rules: Mapping[int, StackedRule]) -> _SimpleRules:
-        """These rules with their reads."""
-        facts = dict.fromkeys(fact for rule in rules.values() for fact in rule.facts)
+    def of(rules: Mapping[int, StackedRule], lacking: Set[str]) -> _SimpleRules:
+        """These rules with their reads; facts about the ``lacking`` ones are not looked into."""
+        judged = [rule for rule in rules.values() if rule.rule.name not in lacking]
+        facts = dict.fromkeys(fact for rule in judged for fact in rule.facts)
         reads = {read.digits_key: read for rule in rules.values() for read in rule.reads}
         place_of = {key: place for place, key in enumerate(reads)}
         places = {
@@ -239,7 +240,8 @@ class _ReadyRules:
                     number: rule
                     for number, rule in enumerate(self.rules)
                     if rule.is_simple and untold.isdisjoint(rule.names)
-                }
+                },
+                self.judged.lacking,
             )
         return known
 
@@ -270,6 +272,67 @@ def _ready_rules(kind: TraceKind, rules: CompiledRulebook) -> _ReadyRules:
     return _ReadyRules(judged, ready, names)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _LackingRules:
+    """The rules that lack names, on traces whose other rules have been judged.
+
+    They are looked at once a verdict is asked for; nothing here refers to the findings, which last
+    as long as that.
+    """
+
+    ready: _ReadyRules
+    simple: _SimpleRules
+    reader: StackReader
+    rulebook: CompiledRulebook
+    close: _CloseLooks
+
+    def doubtful(self) -> Mapping[int, Set[str]]:
+        """By trace the rules that it does not keep whatever these names are."""
+        doubtful: dict[int, set[str]] = defaultdict(set)
+        every = range(len(self.reader.stack.begins) - 1)
+        busy = self.simple.busy(self.reader)
+        for number, rule in enumerate(self.ready.rules):
+            name = rule.rule.name
+            if name not in self.ready.judged.lacking:
+                continue
+            if number not in self.simple.rules:
+                sure, closely = set[int](), {*every}
+            elif number in busy:
+                sure, closely = self._doubtful_in(rule, every)
+            else:
+                continue
+            sure |= {x for x in closely - sure if self.close[x].is_doubtful(name)}
+            for trace in sure:
+                doubtful[trace].add(name)
+        return doubtful
+
+    def _doubtful_in(self, rule: StackedRule, every: range) -> tuple[set[int], set[int]]:
+        """The traces in which a rule is not surely kept, and those of which states decide it."""
+        sure: set[int] = set()
+        closely: set[int] = set()
+        rule.forget_many()
+        try:
+            nobody = np.zeros(len(every), dtype=bool)
+            for found in outcomes(rule, self.reader, self.rulebook, nobody):
+                traces = found.words.instances.traces
+                for place, answer in zip(found.places, found.answers, strict=True):
+                    (closely if answer is None else sure).add(int(traces[place]))
+        except UnencodableError:
+            closely = {*every}
+        return sure, closely
+
+
+class _CloseLooks(dict[int, "_CloseLook"]):
+    """A close look at each trace, by its number, taken once it is needed."""
+
+    def __init__(self, trace: Callable[[int], Trace], rulebook: CompiledRulebook) -> None:
+        self._of = partial(_CloseLook, rulebook=rulebook)
+        self._trace = trace
+
+    def __missing__(self, number: int) -> _CloseLook:
+        return self.setdefault(number, self._of(partial(self._trace, number)))
+
+
 class _CloseLook:
     """Verdicts on single rules of one trace, by its states."""
 
@@ -290,6 +353,9 @@ class _CloseLook:
 
     def answers(self, rule: str) -> list[ViolationOrOpen]:
         return list(self._run.answers(rule))
+
+    def is_doubtful(self, rule: str) -> bool:
+        return self._run.is_doubtful(rule)
 
 
 def _check_objects(traces: JoinedTraces, vocabulary: Vocabulary) -> None:
