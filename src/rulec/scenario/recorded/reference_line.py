@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
@@ -27,9 +28,6 @@ from rulec.recordings.polylines import (
     wrapped,
 )
 from rulec.recordings.recording import Points
-from rulec.scenario.recorded.line_fans import LineFans, line_fans
-from rulec.scenario.recorded.line_surroundings import LineSurroundings, line_surroundings
-from rulec.scenario.recorded.sure_feet import MANY, PieceFans, sure_feet
 from rulec.trace.plain_arrays import distinct
 
 BEYOND_M = 2000.0
@@ -49,6 +47,9 @@ _SMOOTH_M = 5.0
 _STEP_M = 0.5
 _TURN_RAD = np.radians(5.0)
 _HAIR = 1e-9
+
+_AROUND = 1.02
+"""An area around a line is so much wider, as its arcs are made of chords."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,11 +97,8 @@ class ReferenceLine:
 
     def coordinates(self, places: Points) -> Points:
         """Frenet coordinates ``s`` and ``d`` of places, one row each; NaN without a foot."""
-        coordinates, pieces = sure_feet(self.piece_fans, places)
-        left = (pieces < 0).nonzero()[0]
-        low = np.zeros(len(left), dtype=intp)
-        coordinates[left] = self._nearest(places[left], low, low + len(self.arc) - 1)
-        return coordinates
+        low = np.zeros(len(places), dtype=intp)
+        return self._nearest(places, low, low + len(self.arc) - 1)
 
     def coordinates_near(
         self, places: Points, around: Floats, reach: Floats, counts: NDArray[intp] | int = 1
@@ -110,70 +108,53 @@ class ReferenceLine:
         ``counts``: to how many places, one after the other, each ``around`` and ``reach`` applies.
         """
         low, high = (self._piece(s).repeat(counts) for s in (around - reach, around + reach))
-        if len(places) < MANY:
-            return self._nearest(places, low, high)
-        coordinates, pieces = sure_feet(self.piece_fans, places)
-        left = ((pieces < low) | (pieces > high)).nonzero()[0]
-        coordinates[left] = self._nearest(places[left], low[left], high[left])
-        return coordinates
+        return self._nearest(places, low, high)
 
-    def surroundings(self, near_m: float, beyond_m: float) -> LineSurroundings:
-        """A filter for places within ``near_m`` of the line, up to ``beyond_m`` beyond its ends."""
+    def surroundings(self, near_m: float, beyond_m: float) -> shapely.Polygon:
+        """An area with all places within ``near_m`` of the line, up to ``beyond_m`` off its ends.
+
+        It is prepared, and hardly larger than needed.
+        """
         at = np.concatenate(([-beyond_m], self.arc[1:], [self.length + beyond_m]))
         pieces = self._piece(at)
-        return line_surroundings(
-            self.start[pieces] + (at - self.arc[pieces])[:, None] * self.ahead[pieces], near_m
-        )
+        corners = self.start[pieces] + (at - self.arc[pieces])[:, None] * self.ahead[pieces]
+        area = shapely.LineString(corners).buffer(near_m * _AROUND)
+        shapely.prepare(area)
+        return area
 
     def _piece(self, s: Floats) -> NDArray[intp]:
-        return self.piece_fans.at(s)
+        return np.maximum(self.arc.searchsorted(s, "right") - 1, 0)
 
     @cached_property
-    def _fans(self) -> LineFans:
-        slopes = np.stack((self.first, self.first + self.change), axis=1)
-        return line_fans(self.start, self.ahead, self.lengths, slopes)
-
-    @cached_property
-    def piece_fans(self) -> PieceFans:
-        """The pieces in the form that ``sure_feet`` needs."""
-        own = self.lengths, self.first, self.change, self.arc
-        return PieceFans(np.stack((*self.ahead.T, *self.start.T, *own)))
+    def _columns(self) -> Floats:
+        """A column for each piece; the last row is how much farther (m) it is taken to be."""
+        more = np.zeros(len(self.arc))
+        more[[0, -1]] = _BESIDE_M
+        own = self.lengths, self.first, self.change, self.arc, more
+        return np.stack((*self.ahead.T, *self.start.T, *own))
 
     def _nearest(self, places: Points, low: NDArray[intp], high: NDArray[intp]) -> Points:
         """The coordinates of each place's nearest foot on the pieces from ``low`` to ``high``."""
-        if not len(places):
-            return np.empty((0, 2))
-        numbers, pieces = self._fans.candidates(places, low, high)
-        ux, uy, x, y, lengths, first, change, arc = self.piece_fans.columns.take(pieces, axis=1)
-        dx, dy = places[numbers, 0] - x, places[numbers, 1] - y
-        along = dx * ux + dy * uy
-        across = ux * dy - uy * dx
-        turned_lengths = lengths - across * change
-        with np.errstate(divide="ignore", invalid="ignore"):
-            part = (along + across * first) / turned_lengths
-        good = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
-        at = good.nonzero()[0]
-        numbers, own, foot, across = numbers[at], pieces[at], part[at] * lengths[at], across[at]
-        # The same formula as in sure_feet, for bit-identical results
-        distance = np.sqrt(np.square(along[at] - foot) + np.square(across))
-        away = distance + np.where((own == 0) | (own == len(self.arc) - 1), _BESIDE_M, 0.0)
-        best = _least_of_each(numbers, away)
         coordinates = np.full((len(places), 2), np.nan)
-        coordinates[numbers[best], 0] = arc[at[best]] + foot[best]
-        coordinates[numbers[best], 1] = np.copysign(distance[best], across[best])
+        nearest = np.full(len(places), np.inf)
+        for number in range(int((high - low).max(initial=-1)) + 1):
+            own = (low + number <= high).nonzero()[0]
+            pieces = low[own] + number
+            ux, uy, x, y, lengths, first, change, arc, more = self._columns.take(pieces, axis=1)
+            dx, dy = places[own, 0] - x, places[own, 1] - y
+            along, across = dx * ux + dy * uy, ux * dy - uy * dx
+            turned_lengths = lengths - across * change
+            with np.errstate(divide="ignore", invalid="ignore"):
+                part = (along + across * first) / turned_lengths
+            foot = part * lengths
+            distance = np.sqrt(np.square(along - foot) + np.square(across))
+            is_foot = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
+            better = (is_foot & (distance + more < nearest[own])).nonzero()[0]
+            own = own[better]
+            nearest[own] = (distance + more)[better]
+            coordinates[own, 0] = (arc + foot)[better]
+            coordinates[own, 1] = np.copysign(distance, across)[better]
         return coordinates
-
-
-def _least_of_each(groups: NDArray[intp], values: Floats) -> NDArray[intp]:
-    """The index of the first least value in each group; the values of a group are consecutive."""
-    if not len(groups):
-        return groups
-    begins = np.concatenate(([True], groups[1:] != groups[:-1]))
-    if begins.all():
-        return np.arange(len(groups))
-    least = np.minimum.reduceat(values, begins.nonzero()[0])[begins.cumsum() - 1]
-    at: NDArray[intp] = (values == least).nonzero()[0]
-    return at[np.concatenate(([True], groups[at[1:]] != groups[at[:-1]]))]
 
 
 def reference_line(corners: Points) -> ReferenceLine:
