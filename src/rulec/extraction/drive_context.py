@@ -25,7 +25,7 @@ from rulec.recordings.recording import Recording, Side
 from rulec.scenario.recorded.route import ways_on
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
-from rulec.trace.plain_arrays import distinct, medians
+from rulec.trace.plain_arrays import medians
 
 _ENOUGH_TRACKS = 10
 _ENOUGH_IN_LANE = 3
@@ -207,7 +207,7 @@ class DriveContext:
         """The distinct (piece, lane) pairs at places along the road; by state the pair's index."""
         width = self.existing_lanes.shape[1]
         codes = self.road.piece(middle) * width + lanes
-        different = distinct(codes)
+        different = np.unique(codes)
         places = tuple([divmod(code, width) for code in different.tolist()])
         return places, different.searchsorted(codes)
 
@@ -339,7 +339,7 @@ class DriveContext:
         if not self._may_be_off(rows, drive, lane, away):
             return by_state
         of_all: Floats | None = None
-        for number in distinct(self.ego_lane).tolist():
+        for number in np.unique(self.ego_lane).tolist():
             inside = (lane == number).nonzero()[0]
             offset, count = self._offsets(rows[inside], drive[inside], away[inside])
             if (count < _ENOUGH_IN_LANE).any() and of_all is None:

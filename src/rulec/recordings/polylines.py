@@ -11,7 +11,6 @@ from numpy import float64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.recording import Points
-from rulec.trace.plain_arrays import distinct, median
 
 _SHARPEST = 0.5
 """The largest factor by which a border is displaced at a sharp turn of the line."""
@@ -73,7 +72,7 @@ def noise_of(places: Points) -> float:
 
 def noise_by_thirds(thirds: NDArray[float64]) -> float:
     """The standard deviation of noise by third differences (m); 0 if there are none."""
-    return median(np.abs(thirds)) / _THIRD_OF_NOISE if thirds.size else 0.0
+    return float(np.median(np.abs(thirds))) / _THIRD_OF_NOISE if thirds.size else 0.0
 
 
 def densified(points: Points, every_m: float) -> Points:
@@ -119,7 +118,7 @@ def paired(line: Points, other: Points) -> tuple[Points, Points]:
     The points of both are at equal shares of their lengths.
     """
     parts = [shares_along(line), shares_along(other)]
-    at = distinct(np.concatenate(parts))
+    at = np.unique(np.concatenate(parts))
     at = at[np.append(True, np.diff(at) > _ONE)]
     # The ends are both's, however close a point is
     at[0], at[-1] = 0.0, 1.0

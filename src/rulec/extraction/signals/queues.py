@@ -23,7 +23,7 @@ from rulec.extraction.signals.ego_lanelets import travel_lanes_first
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
-from rulec.trace.plain_arrays import medians_hold, ranks
+from rulec.trace.plain_arrays import medians_hold
 
 _BODY_M = 5.0
 """Roughly the length of a vehicle (m)."""
@@ -265,7 +265,7 @@ def _short_gaps(
     own = around.s_min.take(chosen)
     rears, fronts = np.full((2, *shape), np.nan)
     rears.ravel()[at] = own
-    at = ranks(rears).ravel().take(at) * len(counts) + rows
+    at = rears.argsort(axis=0, kind="stable").argsort(axis=0).ravel().take(at) * len(counts) + rows
     entries = np.zeros(shape, dtype=intp)
     rears.ravel()[at], fronts.ravel()[at] = own, around.s_max.take(chosen)
     entries.ravel()[at] = chosen

@@ -21,7 +21,6 @@ from rulec.extraction.signals.signal_columns import (
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.partly_known.partly_known_values import Truth
-from rulec.trace.plain_arrays import distinct
 
 _HAIR = 1e-6
 _MOST_CHANGES = 2
@@ -167,7 +166,7 @@ def _brief_at_ends(column: SignalColumn, least: int, spans: EndToEnd) -> Flags:
     """Mask of values, at a column's or rows' ends, that last for fewer states than ``least``."""
     brief, either = np.zeros(column.shape, dtype=bool), np.logical_or.accumulate
     of_drive = np.minimum(least, spans.lengths) - 1
-    for most in distinct(of_drive[of_drive > 0]).tolist():
+    for most in np.unique(of_drive[of_drive > 0]).tolist():
         own = of_drive == most
         # This many states inward from each end of a drive, and one more
         near = np.arange(most + 1)

@@ -23,7 +23,6 @@ from rulec.recordings.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at
 from rulec.scenario.recorded.route import lanelet_length, lanes_beside
-from rulec.trace.plain_arrays import distinct, median
 
 NARROWEST_LANE_M = 1.0
 """Where a lane is narrower than this (m), it has not begun yet or has ended."""
@@ -121,7 +120,7 @@ def lanes_along(
     """
     lanelets = [recording.lanelets[number] for number in way]
     borders = borders_along(lanelets, line) if borders is None else borders
-    grid = distinct(np.concatenate([np.arange(0.0, line.length, _EVERY_M), borders]))
+    grid = np.unique(np.concatenate([np.arange(0.0, line.length, _EVERY_M), borders]))
     grid = grid[np.concatenate(([True], np.diff(grid) > _HAIR_M))]
     own_number = np.zeros(len(way), dtype=int) if numbers is None else np.array(numbers)
     strip = _Strip(recording, lanelets, line, borders, grid, own_number=own_number)
@@ -194,7 +193,7 @@ def _usual_widths(
         if own[at]:
             yield float(np.interp(ego_s, grid, width))
         else:
-            yield median(width[:-1][own]) if own.any() else NARROWEST_LANE_M
+            yield float(np.median(width[:-1][own])) if own.any() else NARROWEST_LANE_M
 
 
 def _by_number(

@@ -28,7 +28,6 @@ from rulec.recordings.polylines import (
     wrapped,
 )
 from rulec.recordings.recording import Points
-from rulec.trace.plain_arrays import distinct
 
 BEYOND_M = 2000.0
 """How far (m) the line continues straight beyond its ends."""
@@ -238,7 +237,7 @@ def _bends(points: Points) -> NDArray[intp]:
     share = np.hypot(*steps.T) / _PIECE_M + turned / _TURN_RAD
     reached = np.concatenate(([0.0], share.cumsum()))
     wanted = np.linspace(0.0, reached[-1], int(np.ceil(reached[-1])) + 1)
-    numbers: NDArray[intp] = distinct(reached.searchsorted(wanted).clip(0, len(points) - 1))
+    numbers: NDArray[intp] = np.unique(reached.searchsorted(wanted).clip(0, len(points) - 1))
     return numbers
 
 

@@ -14,7 +14,6 @@ from rulec.array_types import Flags
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Participant
-from rulec.trace.plain_arrays import distinct
 
 _THROUGH_M = 2.0
 """Who drives less far (m) through a junction between two states only touches its edge."""
@@ -50,7 +49,7 @@ def junction_stays(
         return
     at, where = places_in(areas, tracks.x[rows, columns], tracks.y[rows, columns])
     before, through = _between_states(areas, tracks, drive, _FASTEST_MPS * step_s)
-    for number in distinct(np.append(where, through)).tolist():
+    for number in np.unique(np.append(where, through)).tolist():
         inside, seen = np.zeros((2, *tracks.present.shape), dtype=bool)
         chosen = at[where == number]
         seen[rows[chosen], columns[chosen]] = True

@@ -18,7 +18,6 @@ from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import Points
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_at
-from rulec.trace.plain_arrays import are_new
 
 NEAR_M = 3.0
 """The greatest distance (m) of a vehicle from a lanelet that it is matched to."""
@@ -104,7 +103,7 @@ def candidates(graph: LaneletGraph, tracks: Tracks) -> LaneCandidates:
     # By place, lanelets in the order of the file
     order = at.argsort(kind="stable")
     at = at[order]
-    first = np.concatenate((are_new(at).nonzero()[0], (len(at),)))
+    first = np.append(np.unique(at, return_index=True)[1], len(at))
     states = at[first[:-1]]
     names = tuple(lanelet.id for lanelet in lanes)
     return LaneCandidates(
@@ -180,7 +179,7 @@ def feet_on(lines: Sequence[tuple[Points, Points]]) -> tuple[Floats, Floats]:
     off[is_beyond] = np.sqrt(dx**2 + dy**2)
     least = np.minimum.reduceat(off, bounds)
     best = (off == least.repeat(n_pieces)).nonzero()[0]
-    best = best[are_new(number[best])]
+    best = best[np.unique(number[best], return_index=True)[1]]
     part, length = part[best], lengths[piece[best]]
     on = np.where(part > 0, np.where(part > 1, length, part * length), 0.0)
     return np.concatenate(before)[piece[best]] + on, least

@@ -31,7 +31,6 @@ from rulec.extraction.tracks.matching.lane_candidates import SIGMA_M, LaneCandid
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import Recording
-from rulec.trace.plain_arrays import distinct
 
 BETA_M = 2.0
 """The mean difference (m) between the way along lanelets and the way moved."""
@@ -307,7 +306,7 @@ def _transitions(
     to, since = found.first[states][row] + end, found.first[states - 1][row] + start
     count = len(found.names)
     codes = found.lanes[since] * count + found.lanes[to]
-    different = distinct(codes)
+    different = np.unique(codes)
     starts, ends = (numbers.tolist() for numbers in np.divmod(different, count))
     ways_of = {start: graph.ways(found.names[start]) for start in set(starts)}
     pairs_of = zip(starts, ends, strict=True)
