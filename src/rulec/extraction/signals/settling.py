@@ -250,7 +250,7 @@ def with_one_change(
     np.minimum.at(comes, before, np.where(code == late, states, len(near)))
     later = states >= comes[before]
     found = np.array(codes)
-    found.ravel()[places[fits]] = np.where(later, late, early)[fits]
+    np.put(found, places[fits], np.where(later, late, early)[fits])
     return found
 
 
@@ -300,5 +300,5 @@ def only_when(
     # Codes that differ at the ends are all different, or alternate
     one_way = changes.take(behind) - changes.take(before) <= _MOST_CHANGES
     only = one_way & (near.take(before) != near.take(behind)) & (behind - before - 1 <= most)
-    found.ravel()[places[only]] = True
+    np.put(found, places[only], True)
     return found

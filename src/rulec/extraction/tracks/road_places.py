@@ -123,7 +123,7 @@ class RoadPlaces(KeepsResults):
         )
         flags: Flags = close & self.tracks.of_type("vulnerable_user")[:, None]
         others = Cells.at(close & self.in_traffic[:, None] & ~flags & ~self.on_lanes)
-        flags.ravel()[others.places] = np.cos(others.of(self.extents.turned)) < _ONCOMING_COSINE
+        np.put(flags, others.places, np.cos(others.of(self.extents.turned)) < _ONCOMING_COSINE)
         rails = self.tracks.of_type("rail_vehicle").nonzero()[0]
         if len(rails):
             flags[rails] |= self._next_to_lanes(rails)

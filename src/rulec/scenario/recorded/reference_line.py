@@ -10,6 +10,7 @@ Beyond its ends the line continues straight.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -28,6 +29,7 @@ from rulec.recordings.polylines import (
     wrapped,
 )
 from rulec.recordings.recording import Points
+from rulec.trace.plain_arrays import ranges
 
 BEYOND_M = 2000.0
 """How far (m) the line continues straight beyond its ends."""
@@ -46,6 +48,10 @@ _SMOOTH_M = 5.0
 _STEP_M = 0.5
 _TURN_RAD = np.radians(5.0)
 _HAIR = 1e-9
+_MARGIN_M = 1e-5
+
+_AT_ONCE = 1 << 16
+"""Pairs of places and pieces that are looked at together, so that they stay in the cache."""
 
 _AROUND = 1.02
 """An area around a line is so much wider, as its arcs are made of chords."""
@@ -96,8 +102,14 @@ class ReferenceLine:
 
     def coordinates(self, places: Points) -> Points:
         """Frenet coordinates ``s`` and ``d`` of places, one row each; NaN without a foot."""
-        low = np.zeros(len(places), dtype=intp)
-        return self._nearest(places, low, low + len(self.arc) - 1)
+        coordinates = np.empty((len(places), 2))
+        (first_normals, first_at), (last_normals, last_at) = self._ends
+        for part in _blocks(len(places), len(self.arc)):
+            away = places[part] - self.start[0]
+            may_be = away @ first_normals.T >= first_at - _MARGIN_M
+            may_be &= away @ last_normals.T <= last_at + _MARGIN_M
+            coordinates[part] = self._nearest(places[part], *may_be.nonzero())
+        return coordinates
 
     def coordinates_near(
         self, places: Points, around: Floats, reach: Floats, counts: NDArray[intp] | int = 1
@@ -107,7 +119,11 @@ class ReferenceLine:
         ``counts``: to how many places, one after the other, each ``around`` and ``reach`` applies.
         """
         low, high = (self._piece(s).repeat(counts) for s in (around - reach, around + reach))
-        return self._nearest(places, low, high)
+        widths, coordinates = high - low + 1, np.empty((len(places), 2))
+        for part in _blocks(len(places), int(widths.max(initial=1))):
+            own, pieces = np.arange(len(widths[part])), ranges(low[part], widths[part])[0]
+            coordinates[part] = self._nearest(places[part], own.repeat(widths[part]), pieces)
+        return coordinates
 
     def surroundings(self, near_m: float, beyond_m: float) -> shapely.Polygon:
         """An area with all places within ``near_m`` of the line, up to ``beyond_m`` off its ends.
@@ -132,28 +148,44 @@ class ReferenceLine:
         own = self.lengths, self.first, self.change, self.arc, more
         return np.stack((*self.ahead.T, *self.start.T, *own))
 
-    def _nearest(self, places: Points, low: NDArray[intp], high: NDArray[intp]) -> Points:
-        """The coordinates of each place's nearest foot on the pieces from ``low`` to ``high``."""
+    @cached_property
+    def _ends(self) -> tuple[tuple[Points, Floats], ...]:
+        """The lines through both ends of each piece between which a foot on it may be.
+
+        As unit normals (a row for each piece), and how far (m) the lines are along them.
+        """
+        left = np.stack((-self.ahead[:, 1], self.ahead[:, 0]), axis=1)
+        last = self.start + self.lengths[:, None] * self.ahead
+        found = []
+        for corners, slopes in ((self.start, self.first), (last, self.first + self.change)):
+            normals = (self.ahead + slopes[:, None] * left) / np.hypot(1.0, slopes)[:, None]
+            found.append((normals, ((corners - self.start[0]) * normals).sum(axis=1)))
+        return tuple(found)
+
+    def _nearest(self, places: Points, own: NDArray[intp], pieces: NDArray[intp]) -> Points:
+        """The coordinates of each place's nearest foot, of its ``own`` with each of ``pieces``."""
+        ux, uy, x, y, lengths, first, change, arc, more = self._columns.take(pieces, axis=1)
+        dx, dy = places[own, 0] - x, places[own, 1] - y
+        along, across = dx * ux + dy * uy, ux * dy - uy * dx
+        turned_lengths = lengths - across * change
+        with np.errstate(divide="ignore", invalid="ignore"):
+            part = (along + across * first) / turned_lengths
+        foot = part * lengths
+        distance = np.sqrt(np.square(along - foot) + np.square(across))
+        is_foot = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
+        nearest = np.lexsort((np.where(is_foot, distance + more, np.inf), own))
+        best = nearest[np.unique(own, return_index=True)[1]]
+        best = best[is_foot[best]]
         coordinates = np.full((len(places), 2), np.nan)
-        nearest = np.full(len(places), np.inf)
-        for number in range(int((high - low).max(initial=-1)) + 1):
-            own = (low + number <= high).nonzero()[0]
-            pieces = low[own] + number
-            ux, uy, x, y, lengths, first, change, arc, more = self._columns.take(pieces, axis=1)
-            dx, dy = places[own, 0] - x, places[own, 1] - y
-            along, across = dx * ux + dy * uy, ux * dy - uy * dx
-            turned_lengths = lengths - across * change
-            with np.errstate(divide="ignore", invalid="ignore"):
-                part = (along + across * first) / turned_lengths
-            foot = part * lengths
-            distance = np.sqrt(np.square(along - foot) + np.square(across))
-            is_foot = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
-            better = (is_foot & (distance + more < nearest[own])).nonzero()[0]
-            own = own[better]
-            nearest[own] = (distance + more)[better]
-            coordinates[own, 0] = (arc + foot)[better]
-            coordinates[own, 1] = np.copysign(distance, across)[better]
+        coordinates[own[best], 0] = (arc + foot)[best]
+        coordinates[own[best], 1] = np.copysign(distance, across)[best]
         return coordinates
+
+
+def _blocks(count: int, width: int) -> Iterator[slice]:
+    """Slices of places with up to ``width`` pieces each."""
+    size = max(_AT_ONCE // width, 1)
+    return (slice(begin, begin + size) for begin in range(0, count, size))
 
 
 def reference_line(corners: Points) -> ReferenceLine:

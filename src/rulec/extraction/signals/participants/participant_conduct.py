@@ -48,7 +48,7 @@ def comes_towards(context: DriveContext) -> Flags:
     faces = _faces(context)
     comes = faces & (along * -KMH_PER_MPS >= context.thresholds.standing_kmh)
     others = Cells.at(faces & ~comes)
-    comes.ravel()[others.places] = _waits_elsewhere(context, others)
+    np.put(comes, others.places, _waits_elsewhere(context, others))
     return comes
 
 
