@@ -3,7 +3,6 @@
 import gzip
 import io
 import json
-from unittest.mock import patch
 
 import pytest
 from hypothesis import given
@@ -304,15 +303,9 @@ def test_states_that_never_come_again_are_not_remembered(monkeypatch):
 
 @given(
     st.lists(st.binary(max_size=30), max_size=8),
-    st.sampled_from([0, 10, 1_000]),
     st.randoms(use_true_random=False),
 )
-def test_lines_are_the_same_however_they_arrive(parts, long_line, chance):
-    with patch.object(stream_lines, "_LONG_LINE", long_line):
-        lines_come_in_order(parts, chance)
-
-
-def lines_come_in_order(parts, chance):
+def test_lines_are_the_same_however_they_arrive(parts, chance):
     data = b"\n".join(parts)
     writes = []
     while data:

@@ -82,18 +82,8 @@ def densified(points: Points, every_m: float) -> Points:
 
 def densified_lines(lines: Sequence[Points], every_m: float) -> tuple[Points, list[int]]:
     """The same for several lines: their points end to end, and how many each has."""
-    points, sizes = np.concatenate(lines), [len(line) for line in lines]
-    begins = np.cumsum([0, *sizes])[:-1]
-    ways = np.diff(points, axis=0, prepend=points[:1])
-    ways[begins] = 0.0
-    # Each point, and before it those on the way to it; to a line's first one there is none
-    counts = np.maximum(1, np.ceil(np.hypot(*ways.T) / every_m)).astype(int)
-    piece = np.repeat(np.arange(len(ways)), counts)
-    number = np.arange(1, len(piece) + 1) - np.repeat(np.cumsum(counts) - counts, counts)
-    before = np.arange(len(ways)) - 1
-    before[begins] = begins
-    between = points[before[piece]] + ways[piece] * (number / counts[piece])[:, None]
-    return between, np.add.reduceat(counts, begins).tolist()
+    dense = shapely.segmentize([shapely.LineString(line) for line in lines], every_m)
+    return shapely.get_coordinates(dense), shapely.get_num_coordinates(dense).tolist()
 
 
 def parallel_line(points: Points, offset: float | NDArray[float64]) -> Points:
