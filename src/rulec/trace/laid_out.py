@@ -27,7 +27,7 @@ class LaidOut:
 
         Where a participant is absent, flags are False, sets empty and measures NaN.
         """
-        part = values[self.rows[:, None], self.columns]
+        part = values.take(self.rows, axis=0).take(self.columns, axis=1)
         part[self.absent] = np.nan if values.dtype.kind == "f" else 0
         return part
 
