@@ -94,7 +94,7 @@ def to_verdicts(file: Path, rules: rulec.CompiledRulebook) -> Callable[[], objec
 
     def judged() -> int:
         with file.open("rb") as stream:
-            chunks = read_chunks(stream, str(file), format_of(str(file)), together=True)
+            chunks = read_chunks(stream, str(file), format_of(str(file)))
             return sum(
                 len([*answers]) for items in chunks for _, answers in verify_items(items, rules)
             )

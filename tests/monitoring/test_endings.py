@@ -131,7 +131,7 @@ def test_what_happens_in_the_last_second(kind, in_seconds, said, ends, copies, b
     expected = WHEN_CUT if ends == "cut" else WHEN_COMPLETE
     answers = list(rulec.verify_many(rulec.read_traces(path), rules))
     with path.open("rb") as stream:
-        for items in read_chunks(stream, str(path), kind, together=True):
+        for items in read_chunks(stream, str(path), kind):
             answers += [one for _, some in verify_items(items, rules) for one in some]
     assert len(answers) == 2 * len(names)
     for verdict in answers:
@@ -158,7 +158,7 @@ def test_cut_traces_that_are_judged_together_are_judged_as_alone(kind, book, tmp
     KINDS[kind](path, [f"{name}~{n}" for n in range(20) for name in SITUATIONS], **SECONDS)
     alone = [rulec.verify(trace, rules) for trace in rulec.read_traces(path)]
     with path.open("rb") as stream:
-        chunks = read_chunks(stream, str(path), kind, together=True)
+        chunks = read_chunks(stream, str(path), kind)
         judged = [some for items in chunks for _, some in verify_items(items, rules)]
         together = list(chain.from_iterable(judged))
     assert {verdict.presumed for verdict in together} == {("way_free",), ("siren", "way_free")}

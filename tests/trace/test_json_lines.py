@@ -3,7 +3,6 @@
 import gzip
 import io
 import json
-from unittest.mock import patch
 
 import pytest
 from hypothesis import given
@@ -11,7 +10,7 @@ from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
-from rulec.trace.formats import alike_lines, json_line_problems, json_lines, stream_lines
+from rulec.trace.formats import json_line_problems, json_lines, stream_lines
 from rulec.trace.formats.json_lines import read_chunks, write_traces
 from rulec.trace.formats.stream_lines import lines_as_they_come
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
@@ -304,15 +303,9 @@ def test_states_that_never_come_again_are_not_remembered(monkeypatch):
 
 @given(
     st.lists(st.binary(max_size=30), max_size=8),
-    st.sampled_from([0, 10, 1_000]),
     st.randoms(use_true_random=False),
 )
-def test_lines_are_the_same_however_they_arrive(parts, long_line, chance):
-    with patch.object(stream_lines, "_LONG_LINE", long_line):
-        lines_come_in_order(parts, chance)
-
-
-def lines_come_in_order(parts, chance):
+def test_lines_are_the_same_however_they_arrive(parts, chance):
     data = b"\n".join(parts)
     writes = []
     while data:
@@ -393,22 +386,12 @@ def test_a_way_out_shows_what_is_meant(text, way_out):
 
 
 @pytest.mark.parametrize("blank", ["\n", " \n", "\t\r\n"])
-@pytest.mark.parametrize("together", [False, True])
-def test_blank_lines_are_passed_over(blank, together, monkeypatch):
-    """Millions of them take no time: none is looked at, and others keep their numbers."""
-    looked_at = []
-    outlined = alike_lines._outlined
-
-    def noted(number, line, *rest):
-        looked_at.append(line)
-        return outlined(number, line, *rest)
-
-    monkeypatch.setattr(alike_lines, "_outlined", noted)
+def test_blank_lines_are_passed_over(blank):
+    """Others keep their numbers."""
     trace = '{"states": [{"p": true}, {"p": false}]}\n'
     text = blank * 20_000 + trace + blank * 20_000 + trace + "{\n" + blank * 3
     stream = io.BytesIO(text.encode())
-    found = [one for chunk in read_chunks(stream, "t.jsonl", together=together) for one in chunk]
+    found = [one for chunk in read_chunks(stream, "t.jsonl") for one in chunk]
     assert [one.place.line for one in found[:2]] == [20_001, 40_002]
     assert found[2].diagnostics[0].place.line == 40_003
     assert len(found) == 3
-    assert len(looked_at) == (3 if together else 0)

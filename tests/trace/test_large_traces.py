@@ -23,7 +23,7 @@ CSV = "trace,step,p\n" + "".join(f"{name},{n},true\n" for name, count in ROWS fo
 
 def read(data, form):
     data = data if isinstance(data, bytes) else data.encode()
-    chunks = read_chunks(io.BytesIO(data), "t", form, together=True)
+    chunks = read_chunks(io.BytesIO(data), "t", form)
     return [
         one.diagnostics[0] if isinstance(one, RulecError) else one.id
         for chunk in chunks

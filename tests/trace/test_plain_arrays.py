@@ -1,68 +1,18 @@
-"""Arrays' different numbers and medians, as NumPy has them."""
+"""Ranges of numbers, and medians of groups."""
 
 import statistics
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.trace.plain_arrays import (
-    begin_runs,
-    distinct,
-    median,
-    medians,
-    medians_hold,
-    quantile,
-    ranges,
-    ranks,
-    zero_if_nan,
-)
-
-
-@pytest.mark.parametrize("numbers", [[], [3], [2, 1, 2], [[5, 1], [1, 5]], [0.5, -0.0, 0.0]])
-def test_distinct_numbers_are_those_of_numpy(numbers):
-    assert distinct(np.array(numbers)).tolist() == np.unique(np.array(numbers)).tolist()
-
-
-@pytest.mark.parametrize("numbers", [[3], [2.5, 1], [4, 1, 3], [0.1, 0.3, 0.2, 0.7], [1, np.nan]])
-def test_the_median_is_that_of_numpy(numbers):
-    assert median(np.array(numbers)) == pytest.approx(np.median(numbers), abs=0.0, nan_ok=True)
-
-
-@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=12), st.floats(0, 1))
-def test_quantiles_are_those_of_numpy(numbers, share):
-    wanted = np.quantile(numbers, share)
-    assert quantile(np.array(numbers), share) == pytest.approx(wanted, rel=1e-9, abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("numbers", "runs"), [([], ""), ([0], "T"), ([3, 4, 6, 7, 8, 20], "TFTFFT"), ([1, 3], "TT")]
-)
-def test_runs_begin_where_no_number_is_one_more_than_the_one_before(numbers, runs):
-    found = begin_runs(np.array(numbers, dtype=np.intp))
-    assert found.tolist() == [run == "T" for run in runs]
-
-
-@given(st.lists(st.lists(st.integers(0, 5), max_size=7), min_size=1, max_size=9))
-def test_ranks_are_places_in_the_sorted_column(columns):
-    most = max(map(len, columns))
-    padded = np.array([[*own, *[np.nan] * (most - len(own))] for own in columns], dtype=float)
-    wanted = []
-    for own in columns:
-        in_order = sorted(range(len(own)), key=own.__getitem__)
-        wanted.append([*map(in_order.index, range(len(own))), *range(len(own), most)])
-    assert ranks(padded.T).T.tolist() == wanted
+from rulec.trace.plain_arrays import medians, medians_hold, ranges, zero_if_nan
 
 
 @given(st.lists(st.floats(allow_infinity=False), max_size=9))
 def test_nothing_but_nan_becomes_zero(numbers):
     found, wanted = zero_if_nan(np.array(numbers)), np.nan_to_num(np.array(numbers))
     assert found.tolist() == wanted.tolist()
-
-
-def test_what_is_no_number_has_no_quantile():
-    assert np.isnan(quantile(np.array([1.0, np.nan]), 0.5))
 
 
 @given(st.lists(st.tuples(st.integers(-9, 9), st.integers(0, 5)), max_size=9))

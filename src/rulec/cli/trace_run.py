@@ -184,7 +184,7 @@ class TraceRun(VerdictRun):
         size = None if name == "standard input" else _size(stream)
         refused = 0
         with progress(f"judging {name}", size) as tell:
-            for chunk in read_chunks(stream, name, form, together=True):
+            for chunk in read_chunks(stream, name, form):
                 for judged, facts in self._in_chunk(assumed.of(chunk)):
                     answer = judged[-1]
                     refused = refused + 1 if isinstance(answer, NotJudged) else 0

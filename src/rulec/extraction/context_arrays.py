@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
-from typing import Any
 
 import numpy as np
 from numpy import intp
@@ -18,7 +17,7 @@ from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.recordings.recording import Side
 from rulec.trace.end_to_end import EndToEnd
-from rulec.trace.laid_out import LaidOut, columns_of, one_behind_the_other
+from rulec.trace.laid_out import LaidOut, columns_of
 from rulec.trace.plain_arrays import keep_freed_memory
 
 
@@ -51,12 +50,12 @@ def drives_context(
     members = np.array(egos.rows, dtype=intp)
     own = spans.spread(members)[None], columns[None]
     ego = egos.places.extents.at(*own)
-    relevant, in_sight = _near(places, egos.columns, ego)
+    relevant, in_sight = _near(places, columns, ego)
     if egos.own is surroundings:
         relevant[own[0], spans.columns] = in_sight[own[0], spans.columns] = False
     are_near = relevant | in_sight
     rows = are_near.any(axis=1).nonzero()[0]
-    laid = LaidOut(rows, egos.columns, ~spans.any(are_near[rows]))
+    laid = LaidOut(rows, columns, ~spans.any(are_near[rows]))
     return DriveContext(
         recording=surroundings.recording,
         thresholds=places.thresholds,
@@ -81,27 +80,20 @@ def drives_context(
     )
 
 
-def _near(places: RoadPlaces, ranges: Sequence[slice], ego: RoadExtents) -> tuple[Flags, Flags]:
+def _near(places: RoadPlaces, columns: NDArray[intp], ego: RoadExtents) -> tuple[Flags, Flags]:
     """Masks of the participants (rows) that count for ego and of those in its sight, by state.
 
-    The states of several ``ranges`` are laid end to end.
+    The states are those in some ``columns``.
     """
     limits, extents = places.thresholds, places.extents
 
-    columns = columns_of(ranges)
-
-    def laid(values: NDArray[Any]) -> NDArray[Any]:
-        if len(ranges) == 1:
-            return values[:, ranges[0]]
-        return one_behind_the_other(values, ranges, columns)
-
-    gap = laid(extents.s_min) - ego.s_max
-    np.maximum(gap, ego.s_min - laid(extents.s_max), out=gap)
+    gap = np.maximum(
+        extents.s_min.take(columns, axis=1) - ego.s_max,
+        ego.s_min - extents.s_max.take(columns, axis=1),
+    )
     # A little farther, since speeds are only known to within a tolerance
-    reach = ego.along - laid(extents.along)
-    reach += 1.0
-    np.maximum(reach, 0.0, out=reach)
-    reach *= limits.catching_up_s
-    relevant = laid(places.counts) & (gap <= limits.near_m) & ~np.isnan(ego.s_min)
-    in_sight = laid(places.seen) & (gap <= np.maximum(limits.near_m, reach, out=reach))
+    faster = np.maximum(ego.along - extents.along.take(columns, axis=1) + 1.0, 0.0)
+    reach = np.maximum(limits.near_m, faster * limits.catching_up_s)
+    relevant = places.counts.take(columns, axis=1) & (gap <= limits.near_m) & ~np.isnan(ego.s_min)
+    in_sight = places.seen.take(columns, axis=1) & (gap <= reach)
     return relevant, in_sight

@@ -25,7 +25,7 @@ from rulec.recordings.recording import Recording, Side
 from rulec.scenario.recorded.route import ways_on
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
-from rulec.trace.plain_arrays import distinct, medians
+from rulec.trace.plain_arrays import medians
 
 _ENOUGH_TRACKS = 10
 _ENOUGH_IN_LANE = 3
@@ -207,7 +207,7 @@ class DriveContext:
         """The distinct (piece, lane) pairs at places along the road; by state the pair's index."""
         width = self.existing_lanes.shape[1]
         codes = self.road.piece(middle) * width + lanes
-        different = distinct(codes)
+        different = np.unique(codes)
         places = tuple([divmod(code, width) for code in different.tolist()])
         return places, different.searchsorted(codes)
 
@@ -330,16 +330,12 @@ class DriveContext:
         whole keep to the middle, so the map may be displaced from the tracks by this much.
         """
         by_state = np.zeros(self.states)
-        if self.extents.most_off_middle <= _LEAST_OFFSET_M:
-            return by_state
         cells = Cells.at(self.driving_along)
         rows, columns = cells.rows, cells.columns
         lane, drive = cells.of(self.extents.lane), self.spans.number[columns]
         away = cells.of(self.extents.off_middle)
-        if not self._may_be_off(rows, drive, lane, away):
-            return by_state
         of_all: Floats | None = None
-        for number in distinct(self.ego_lane).tolist():
+        for number in np.unique(self.ego_lane).tolist():
             inside = (lane == number).nonzero()[0]
             offset, count = self._offsets(rows[inside], drive[inside], away[inside])
             if (count < _ENOUGH_IN_LANE).any() and of_all is None:
@@ -350,28 +346,6 @@ class DriveContext:
             here = self.ego_lane == number
             by_state[here] = offset[self.spans.number[here]]
         return np.where(np.abs(by_state) > _LEAST_OFFSET_M, by_state, 0.0)
-
-    def _may_be_off(
-        self, rows: NDArray[intp], drive: NDArray[intp], lane: NDArray[intp], away: Floats
-    ) -> bool:
-        """Whether a median of medians may exceed ``_LEAST_OFFSET_M`` to either side.
-
-        For that, at least half of the values of at least half of the participants have to, in all
-        lanes or in one. Counting them is faster than computing medians.
-        """
-        n_drives, lanes = self.spans.n_drives, self.existing_lanes.shape[1]
-        sides = [(away * way > _LEAST_OFFSET_M).nonzero()[0] for way in (-1, 1)]
-        for groups, size in (
-            (rows * n_drives + drive, n_drives),
-            ((rows * n_drives + drive) * lanes + lane, n_drives * lanes),
-        ):
-            count = np.bincount(groups, minlength=len(self.relevant) * size).reshape(-1, size)
-            for far in sides:
-                beyond = np.bincount(groups[far], minlength=count.size).reshape(count.shape)
-                are_far = (count > 0) & (2 * beyond >= count)
-                if (are_far.any(axis=0) & (2 * are_far.sum(0) >= (count > 0).sum(0))).any():
-                    return True
-        return False
 
     def _offsets(
         self, rows: NDArray[intp], drive: NDArray[intp], away: Floats

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from rulec.extraction.computed_once import once
 from rulec.extraction.drive_context import DriveContext
 from rulec.trace.cells import Cells
-from rulec.trace.plain_arrays import distinct, in_order
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -44,12 +43,12 @@ def presence_runs(context: DriveContext) -> PresenceRuns:
     parted = (rows[1:] > rows[:-1]) | (away > longest + 1) | (drives[1:] > drives[:-1])
     parted |= np.isnan(counting.of(s))[1:]
     gaps = (~parted & (away > 1)).nonzero()[0]
-    in_gaps = distinct(rows[gaps])
+    in_gaps = np.unique(rows[gaps])
     unknown, own = np.isnan(s[in_gaps]).cumsum(axis=1), in_gaps.searchsorted(rows[gaps])
     parted[gaps] = unknown[own, columns[gaps]] < unknown[own, columns[gaps + 1]]
     some = np.ones(min(len(rows), 1), dtype=bool)
     begins, ends = (np.concatenate(x).nonzero()[0] for x in ((some, parted), (parted, some)))
-    order = in_order(drives[begins])
+    order = drives[begins].argsort(kind="stable")
     begins, ends = begins[order], ends[order]
     own = drives[begins]
     shift = spans.begins[own]
@@ -93,7 +92,7 @@ def presence_names(context: DriveContext) -> list[str]:
     if not again.any():
         return names
     ids = context.recording.ids
-    for drive in distinct(runs.drives[1:][again]).tolist():
+    for drive in np.unique(runs.drives[1:][again]).tolist():
         begin, end = runs.drives.searchsorted((drive, drive + 1)).tolist()
         comes_again = again[begin : end - 1].tolist()
         names[begin:end] = _renamed(names[begin:end], comes_again, ids)

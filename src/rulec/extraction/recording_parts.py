@@ -20,7 +20,6 @@ from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Participant, Recording, StatedError, WholeRecording
 from rulec.recordings.track import TrackOutlines, TrackStates
-from rulec.trace.plain_arrays import median
 from rulec.value_display import short_repr
 
 MOST_CELLS = 3 << 17
@@ -180,7 +179,7 @@ def _noise(recording: Recording) -> tuple[float, float]:
     if len(every) < ENOUGH_DIFFERENCES:
         return 0.0, 0.0
     along, across, turned = (
-        median(own) * OF_MEDIAN / sqrt(comb(2 * order, order)) for own in every.T
+        float(np.median(own)) * OF_MEDIAN / sqrt(comb(2 * order, order)) for own in every.T
     )
     return max(along, across), turned
 

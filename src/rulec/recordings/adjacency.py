@@ -8,15 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import cos, radians
+from typing import Any
 
 import numpy as np
 import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.array_types import Indices
 from rulec.diagnostics import first_of
 from rulec.recordings.recording import Lanelet, Points, Recording, Side, is_lane
+from rulec.trace.plain_arrays import ranges
 
 BORDER_M = 0.5
 """Borders no farther apart than this coincide."""
@@ -37,7 +38,6 @@ _CLEARLY = 4.0
 """The least ratio of lengths on both sides for the side of traffic to be clear."""
 
 _EVERY_M = 2.0
-_HAIR_M = 1e-6
 _LIKE = cos(radians(30))
 _NAMED = 3
 
@@ -63,16 +63,15 @@ def bordering(lanelets: Iterable[Lanelet], *, alone: bool = False) -> Iterator[B
     left = [lane for lane in lanes if not alone or lane.right_of is None]
     if not right or not left:
         return
-    lefts, rights = _Borders([x.left for x in right]), _Borders([x.right for x in left])
-    tree = shapely.STRtree(rights.lines)
-    owns, others = tree.query(lefts.lines, predicate="dwithin", distance=BORDER_M)
+    lefts, rights = _lines([x.left for x in right]), _lines([x.right for x in left])
+    owns, others = shapely.STRtree(rights).query(lefts, predicate="dwithin", distance=BORDER_M)
     named = [(right[own], left[other]) for own, other in zip(owns, others, strict=True)]
     unsaid = [lane is not beside and lane.left_of != beside.id for lane, beside in named]
     owns, others = owns[unsaid], others[unsaid]
     if not len(owns):
         return
-    shares = _near(lefts, owns, rights, others), _near(rights, others, lefts, owns)
-    parts, lengths = np.minimum(*shares), shares[0] * lefts.lengths[owns]
+    shares = _near(lefts[owns], rights[others]), _near(rights[others], lefts[owns])
+    parts, lengths = np.minimum(*shares), shares[0] * shapely.length(lefts[owns])
     pairs = zip(owns.tolist(), others.tolist(), parts.tolist(), lengths.tolist(), strict=True)
     for own, other, part, length in pairs:
         yield Bordering(right[own], left[other], part, length)
@@ -85,82 +84,52 @@ def _oncoming_length(borders: Sequence[Points]) -> float:
     """
     if not borders:
         return 0.0
-    lines = _Borders(borders)
-    owns, others = shapely.STRtree(lines.lines).query(
-        lines.lines, predicate="dwithin", distance=BORDER_M
-    )
+    lines = _lines(borders)
+    owns, others = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=BORDER_M)
     apart = owns != others
     owns, others = owns[apart], others[apart]
     if not len(owns):
         return 0.0
-    lengths = _near(lines, owns, lines, others, sense=-1) * lines.lengths[owns]
+    lengths = _near(lines[owns], lines[others], sense=-1) * shapely.length(lines[owns])
     return float(lengths[lengths >= _LEAST_M].sum())
 
 
-class _Borders:
-    """Many lines, with places along them given by arc length (m)."""
-
-    def __init__(self, lines: Sequence[Points]) -> None:
-        counts = np.array([len(line) for line in lines])
-        self.lines = shapely.linestrings(
-            np.concatenate(lines), indices=np.repeat(np.arange(len(lines)), counts)
-        )
-        self._points = np.concatenate(lines)
-        ends = np.cumsum(counts)
-        self._first, self._last = ends - counts, ends - 1
-        steps = np.hypot(*np.diff(self._points, axis=0, prepend=self._points[:1]).T)
-        # From one line to the next it is a metre, so that no place is on two of them.
-        steps[self._first] = 1.0
-        self._along = np.cumsum(steps)
-        self.lengths = self._along[self._last] - self._along[self._first]
-
-    def points(self, lines: Indices, at: NDArray[float64]) -> Points:
-        """The points at places along some of the lines."""
-        along = self._along[self._first[lines]] + np.clip(at, 0.0, self.lengths[lines])
-        before = np.searchsorted(self._along, along, "right") - 1
-        before = np.clip(before, self._first[lines], self._last[lines] - 1)
-        length = np.maximum(self._along[before + 1] - self._along[before], 1e-12)
-        share = np.clip((along - self._along[before]) / length, 0.0, 1.0)[:, None]
-        points: Points = (1 - share) * self._points[before] + share * self._points[before + 1]
-        return points
-
-    def may_reach(self, lines: Indices, places: Points) -> NDArray[np.bool_]:
-        """Mask of places that may be within ``BORDER_M`` of a line, one line for each place."""
-        bounds = shapely.bounds(self.lines)[lines]
-        beyond = np.maximum(bounds[:, :2] - places, places - bounds[:, 2:])
-        flags: NDArray[np.bool_] = beyond.max(axis=1) <= BORDER_M + _HAIR_M
-        return flags
-
-    def directions(self, lines: Indices, at: NDArray[float64]) -> Points:
-        """The directions there, from a metre before to a metre after."""
-        steps = self.points(lines, at + 1) - self.points(lines, at - 1)
-        directions: Points = steps / np.maximum(np.hypot(*steps.T), 1e-9)[:, None]
-        return directions
+def _lines(borders: Sequence[Points]) -> NDArray[Any]:
+    return np.array([shapely.LineString(border) for border in borders], dtype=object)
 
 
-def _near(
-    lines: _Borders, ones: Indices, others: _Borders, second: Indices, *, sense: int = 1
-) -> NDArray[float64]:
+def _points(lines: NDArray[Any], at: NDArray[float64]) -> Points:
+    """The points at places (m) along lines; beyond an end, that end."""
+    inside = np.clip(at, 0.0, shapely.length(lines))
+    points: Points = shapely.get_coordinates(shapely.line_interpolate_point(lines, inside))
+    return points
+
+
+def _directions(lines: NDArray[Any], at: NDArray[float64]) -> Points:
+    """The directions there, from a metre before to a metre after."""
+    steps = _points(lines, at + 1) - _points(lines, at - 1)
+    directions: Points = steps / np.maximum(np.hypot(*steps.T), 1e-9)[:, None]
+    return directions
+
+
+def _near(lines: NDArray[Any], others: NDArray[Any], *, sense: int = 1) -> NDArray[float64]:
     """The share of each line along which the other line coincides and leads the same way.
 
     With ``sense`` -1, the opposite way.
     """
-    lengths = lines.lengths[ones]
+    lengths = shapely.length(lines)
     counts = np.maximum(2, np.round(lengths / _EVERY_M)).astype(int) + 1
-    ends = np.cumsum(counts)
-    numbers = np.arange(ends[-1]) - np.repeat(ends - counts, counts)
-    at = numbers * np.repeat(lengths / (counts - 1), counts)
-    ones, second = np.repeat(ones, counts), np.repeat(second, counts)
-    places = lines.points(ones, at)
-    # Most borders that meet at all only do at their ends
-    (maybe,) = np.nonzero(others.may_reach(second, places))
-    ones, second, at, points = ones[maybe], second[maybe], at[maybe], shapely.points(places[maybe])
-    near = shapely.distance(others.lines[second], points) <= BORDER_M
-    along = shapely.line_locate_point(others.lines[second], points)
-    cosines = (lines.directions(ones, at) * others.directions(second, along)).sum(axis=1)
-    like = np.zeros(len(numbers), dtype=bool)
-    like[maybe] = near & (sense * cosines >= _LIKE)
-    shares: NDArray[float64] = np.add.reduceat(like, ends - counts, dtype=float) / counts
+    numbers, starts = ranges(np.zeros(len(counts), dtype=int), counts)
+    at = numbers * (lengths / (counts - 1)).repeat(counts)
+    own, other = lines.repeat(counts), others.repeat(counts)
+    points = shapely.points(_points(own, at))
+    shapely.prepare(others)
+    like = shapely.dwithin(other, points, BORDER_M)
+    own, other, points, place = own[like], other[like], points[like], at[like]
+    along = shapely.line_locate_point(other, points)
+    cosines = (_directions(own, place) * _directions(other, along)).sum(axis=1)
+    like[like] = sense * cosines >= _LIKE
+    shares: NDArray[float64] = np.add.reduceat(like, starts, dtype=float) / counts
     return shares
 
 

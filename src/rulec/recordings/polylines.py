@@ -11,7 +11,6 @@ from numpy import float64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.recording import Points
-from rulec.trace.plain_arrays import distinct, median
 
 _SHARPEST = 0.5
 """The largest factor by which a border is displaced at a sharp turn of the line."""
@@ -73,7 +72,7 @@ def noise_of(places: Points) -> float:
 
 def noise_by_thirds(thirds: NDArray[float64]) -> float:
     """The standard deviation of noise by third differences (m); 0 if there are none."""
-    return median(np.abs(thirds)) / _THIRD_OF_NOISE if thirds.size else 0.0
+    return float(np.median(np.abs(thirds))) / _THIRD_OF_NOISE if thirds.size else 0.0
 
 
 def densified(points: Points, every_m: float) -> Points:
@@ -83,18 +82,8 @@ def densified(points: Points, every_m: float) -> Points:
 
 def densified_lines(lines: Sequence[Points], every_m: float) -> tuple[Points, list[int]]:
     """The same for several lines: their points end to end, and how many each has."""
-    points, sizes = np.concatenate(lines), [len(line) for line in lines]
-    begins = np.cumsum([0, *sizes])[:-1]
-    ways = np.diff(points, axis=0, prepend=points[:1])
-    ways[begins] = 0.0
-    # Each point, and before it those on the way to it; to a line's first one there is none
-    counts = np.maximum(1, np.ceil(np.hypot(*ways.T) / every_m)).astype(int)
-    piece = np.repeat(np.arange(len(ways)), counts)
-    number = np.arange(1, len(piece) + 1) - np.repeat(np.cumsum(counts) - counts, counts)
-    before = np.arange(len(ways)) - 1
-    before[begins] = begins
-    between = points[before[piece]] + ways[piece] * (number / counts[piece])[:, None]
-    return between, np.add.reduceat(counts, begins).tolist()
+    dense = shapely.segmentize([shapely.LineString(line) for line in lines], every_m)
+    return shapely.get_coordinates(dense), shapely.get_num_coordinates(dense).tolist()
 
 
 def parallel_line(points: Points, offset: float | NDArray[float64]) -> Points:
@@ -119,7 +108,7 @@ def paired(line: Points, other: Points) -> tuple[Points, Points]:
     The points of both are at equal shares of their lengths.
     """
     parts = [shares_along(line), shares_along(other)]
-    at = distinct(np.concatenate(parts))
+    at = np.unique(np.concatenate(parts))
     at = at[np.append(True, np.diff(at) > _ONE)]
     # The ends are both's, however close a point is
     at[0], at[-1] = 0.0, 1.0

@@ -94,5 +94,5 @@ class Cells:
         array = np.zeros(self.shape, dtype=values.dtype)
         if elsewhere:
             array.fill(elsewhere)
-        array.ravel()[self.places] = values
+        np.put(array, self.places, values)
         return array

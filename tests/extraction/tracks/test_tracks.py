@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from rulec.extraction.tracks.tracks import ObjectTypes, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
-from rulec.trace import laid_out
-from rulec.trace.laid_out import LaidOut
+from rulec.trace.laid_out import LaidOut, columns_of
 from support.builders.recordings import recording, straight, vehicle
 
 ROAD = [straight(1, -100, 300)]
@@ -111,7 +110,6 @@ def test_constant_velocity_is_found_wherever_it_can_be(vx, vy, steps, smoothing_
         assert found.vx[0, step - found.first] == pytest.approx(expected, abs=1e-9)
 
 
-@pytest.mark.parametrize("long", [0, 200])
 @pytest.mark.parametrize(
     ("ranges", "expected"),
     [
@@ -119,11 +117,10 @@ def test_constant_velocity_is_found_wherever_it_can_be(vx, vy, steps, smoothing_
         ([slice(1, 3), slice(2, 4)], [[9, 10, 10, 11], [1, 2, nan, nan]]),
     ],
 )
-def test_who_is_absent_from_a_range_has_no_values_in_it(ranges, expected, long, monkeypatch):
-    monkeypatch.setattr(laid_out, "_LONG", long)
+def test_who_is_absent_from_a_range_has_no_values_in_it(ranges, expected):
     values, absent = np.arange(12.0).reshape(3, 4), np.zeros((2, 4), dtype=bool)
     absent[1, 2:] = True
-    laid = LaidOut(np.array([2, 0]), ranges, absent)
+    laid = LaidOut(np.array([2, 0]), columns_of(ranges), absent)
     assert np.array_equal(laid(values), expected, equal_nan=True)
     by_lane = laid(np.stack((values, -values), axis=-1))
     for lane, sign in enumerate((1, -1)):

@@ -285,7 +285,7 @@ def test_traces_of_a_file_have_the_exposures_that_each_has_alone(form, monkeypat
     write_traces(drives, stream, "t", form, kinds_in(s for x in drives for s in x.states))
     stream.seek(0)
     found = []
-    for chunk in read_chunks(stream, "t", form, together=True):
+    for chunk in read_chunks(stream, "t", form):
         for items, answers in verify_items(chunk, compiled):
             found += facts_of_many(items, list(answers), compiled)
     assert found == alone

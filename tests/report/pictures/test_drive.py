@@ -22,9 +22,8 @@ from rulec.report.pictures.drawing.picture_formats import as_bytes
 from rulec.report.pictures.drives import drive_page
 from rulec.report.pictures.drives.drive_page import scene_data
 from rulec.report.pictures.drives.drive_picture import (
+    _View,
     chosen_moment,
-    clipped_lines,
-    clipped_ring,
     drive_entries,
     drive_picture,
 )
@@ -262,15 +261,21 @@ def test_nearest_points_of_turned_bodies(scene):
     assert np.isnan(nearest_points(left, None, 1)).all()
 
 
-def test_clipping():
-    box = (0.0, 0.0, 10.0, 10.0)
-    ring = clipped_ring([(-5, -5), (5, -5), (5, 5), (-5, 5)], box)
-    assert set(ring) == {(0, 0), (5, 0), (5, 5), (0, 5)}
-    assert clipped_ring([(20, 20), (30, 20), (30, 30)], box) == ()
-    zigzag = [(-5, 5), (5, 5), (5, 15), (8, 15), (8, 5)]
-    assert list(clipped_lines(zigzag, box)) == [((0, 5), (5, 5), (5, 10)), ((8, 10), (8, 5))]
-    circle = [(5 + 4 * cos(a), 5 + 4 * sin(a)) for a in np.linspace(0, 6, 9).tolist()]
-    assert list(clipped_lines(circle, box)) == [tuple(circle)]
+def test_what_is_beyond_the_view_is_cut_off():
+    view = _View(left=0.0, top=10.0, scale=1.0, box=(0.0, 0.0, 10.0, 10.0))
+
+    def seen(points):
+        return [[(x, 10 - y) for x, y in part.points] for part in view.lines(points, "trail")]
+
+    ring = np.array([(-5, -5), (5, -5), (5, 5), (-5, 5)])
+    (area,) = view.area(ring, "ground")
+    assert {(x, 10 - y) for x, y in area.rings[0]} == {(0, 0), (5, 0), (5, 5), (0, 5)}
+    assert list(view.area(ring + 20, "ground")) == []
+    zigzag = np.array([(-5, 5), (5, 5), (5, 15), (8, 15), (8, 5)])
+    assert seen(zigzag) == [[(0, 5), (5, 5), (5, 10)], [(8, 10), (8, 5)]]
+    circle = np.array([(5 + 4 * cos(a), 5 + 4 * sin(a)) for a in np.linspace(0, 6, 9).tolist()])
+    (whole,) = seen(circle)
+    assert np.array(whole) == pytest.approx(circle)
 
 
 @pytest.fixture(scope="module")

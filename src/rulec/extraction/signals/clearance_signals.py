@@ -16,7 +16,6 @@ from rulec.extraction.tracks.lane_sets import is_in
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.partly_known.partly_known_values import Truth
-from rulec.trace.plain_arrays import distinct
 
 _BESIDE_M = 0.5
 """Extra width (m) that passing a vehicle needs."""
@@ -218,7 +217,7 @@ def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
     near |= early & context.tracks.of_type("pedestrian")[cells.rows]
     early &= cells.of(relations.station(context)) == relations.BEHIND
     early &= cells.of(context.standing)
-    rows, never_moves = distinct(cells.rows[early]), np.zeros(len(context.relevant), dtype=bool)
+    rows, never_moves = np.unique(cells.rows[early]), np.zeros(len(context.relevant), dtype=bool)
     never_moves[rows] = context.stays[rows]
     near |= early & never_moves[cells.rows]
     return near

@@ -22,7 +22,6 @@ from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Lanelet, LaneMark, is_lane
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.partly_known.partly_known_values import Truth
-from rulec.trace.plain_arrays import distinct
 
 _SOLID = frozenset({"solid", "double_solid"})
 
@@ -61,7 +60,7 @@ def _marked_rows(context: DriveContext) -> MarkedRows:
     # A piece and its existing lanes, encoded as one number
     lanes = 1 << np.arange(there.shape[1])
     keys = pieces << len(lanes) | there @ lanes
-    different = distinct(keys)
+    different = np.unique(keys)
     rows = tuple(
         tuple(
             lanelet if key & lane else None

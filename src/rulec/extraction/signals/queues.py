@@ -23,7 +23,7 @@ from rulec.extraction.signals.ego_lanelets import travel_lanes_first
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
-from rulec.trace.plain_arrays import medians_hold, ranks
+from rulec.trace.plain_arrays import medians_hold
 
 _BODY_M = 5.0
 """Roughly the length of a vehicle (m)."""
@@ -264,11 +264,12 @@ def _short_gaps(
     at = around.number.take(chosen) * len(counts) + rows
     own = around.s_min.take(chosen)
     rears, fronts = np.full((2, *shape), np.nan)
-    rears.ravel()[at] = own
-    at = ranks(rears).ravel().take(at) * len(counts) + rows
+    np.put(rears, at, own)
+    at = rears.argsort(axis=0, kind="stable").argsort(axis=0).ravel().take(at) * len(counts) + rows
     entries = np.zeros(shape, dtype=intp)
-    rears.ravel()[at], fronts.ravel()[at] = own, around.s_max.take(chosen)
-    entries.ravel()[at] = chosen
+    np.put(rears, at, own)
+    np.put(fronts, at, around.s_max.take(chosen))
+    np.put(entries, at, chosen)
     behind, gaps = entries[:-1], rears[1:] - fronts[:-1]
     # Gaps up to this are short at any speed
     most_wrong = np.fmax.reduce(around.speed_error, initial=0.0)
@@ -278,7 +279,7 @@ def _short_gaps(
     behind, gaps = behind.ravel().take(rest), gaps.ravel().take(rest)
     longest_m = longest_gaps(context, around.speed.take(behind), around.speed_error.take(behind))
     for flags, limit in zip(short, longest_m, strict=True):
-        flags.ravel()[rest] = gaps <= limit
+        np.put(flags, rest, gaps <= limit)
     found: NDArray[intp] = short.sum(axis=1)
     return found
 

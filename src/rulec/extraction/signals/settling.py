@@ -21,7 +21,6 @@ from rulec.extraction.signals.signal_columns import (
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.partly_known.partly_known_values import Truth
-from rulec.trace.plain_arrays import distinct
 
 _HAIR = 1e-6
 _MOST_CHANGES = 2
@@ -167,7 +166,7 @@ def _brief_at_ends(column: SignalColumn, least: int, spans: EndToEnd) -> Flags:
     """Mask of values, at a column's or rows' ends, that last for fewer states than ``least``."""
     brief, either = np.zeros(column.shape, dtype=bool), np.logical_or.accumulate
     of_drive = np.minimum(least, spans.lengths) - 1
-    for most in distinct(of_drive[of_drive > 0]).tolist():
+    for most in np.unique(of_drive[of_drive > 0]).tolist():
         own = of_drive == most
         # This many states inward from each end of a drive, and one more
         near = np.arange(most + 1)
@@ -251,7 +250,7 @@ def with_one_change(
     np.minimum.at(comes, before, np.where(code == late, states, len(near)))
     later = states >= comes[before]
     found = np.array(codes)
-    found.ravel()[places[fits]] = np.where(later, late, early)[fits]
+    np.put(found, places[fits], np.where(later, late, early)[fits])
     return found
 
 
@@ -301,5 +300,5 @@ def only_when(
     # Codes that differ at the ends are all different, or alternate
     one_way = changes.take(behind) - changes.take(before) <= _MOST_CHANGES
     only = one_way & (near.take(before) != near.take(behind)) & (behind - before - 1 <= most)
-    found.ravel()[places[only]] = True
+    np.put(found, places[only], True)
     return found

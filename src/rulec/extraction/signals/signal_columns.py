@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags
 from rulec.diagnostics import RulecError
 from rulec.trace.partly_known.partly_known_values import Truth
-from rulec.trace.plain_arrays import are_new
 
 SignalColumn = NDArray[Any]
 Bounds: TypeAlias = tuple[SignalColumn, SignalColumn]
@@ -237,7 +236,7 @@ def ids_by_state(flags: Flags, ids: Sequence[str]) -> SignalColumn:
         return found
     columns = flags.any(axis=0).nonzero()[0]
     places, rows = flags[:, columns].T.nonzero()
-    begins = are_new(places).nonzero()[0].tolist()
+    begins = np.unique(places, return_index=True)[1].tolist()
     names = [ids[row] for row in rows.tolist()]
     for state, begin, end in zip(columns.tolist(), begins, [*begins, len(names)][1:], strict=True):
         found[state] = tuple(names[begin:end])

@@ -22,7 +22,6 @@ from rulec.extraction.tracks.source_tolerances import MOST_SIGMAS
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import WholeRecording
 from rulec.scenario.recorded.reference_line import turn
-from rulec.trace.plain_arrays import median
 
 _DERIVED_RAD, _ROUNDED_M = 1e-3, 2e-3
 """A heading derived from a way differs from it by rounding: its own, and that of places."""
@@ -74,7 +73,7 @@ def _noise_of_headings(tracks: Tracks, whole: WholeRecording, step_s: float) -> 
     moved = np.hypot(x[:, order:] - x[:, :-order], y[:, order:] - y[:, :-order])
     counts = (moved > MOVES_M) & ~np.isnan(differences)
     for row in (counts.sum(axis=1) >= ENOUGH_DIFFERENCES).nonzero()[0].tolist():
-        of_median = median(np.abs(differences[row, counts[row]]))
+        of_median = float(np.median(np.abs(differences[row, counts[row]])))
         noise[row] = of_median * OF_MEDIAN / sqrt(comb(2 * order, order))
     return noise
 

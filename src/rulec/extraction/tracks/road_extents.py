@@ -103,11 +103,6 @@ class RoadExtents:
         return off
 
     @cached_property
-    def most_off_middle(self) -> float:
-        """The greatest absolute value (m) of ``off_middle``, or an upper bound of it."""
-        return float(np.abs(zero_if_nan(self.off_middle)).max(initial=0.0))
-
-    @cached_property
     def breadth(self) -> Floats:
         """How far (m) bodies extend across each lane (last axis)."""
         return self.left_of_max[..., :-1] - self.left_of_min[..., :-1]
@@ -127,20 +122,16 @@ class RoadExtents:
         self, cells: Cells, *bounds: NDArray[intp] | int
     ) -> list[tuple[Floats, Floats]]:
         """``from_bound`` for some cells only, for each of several bounds."""
-        whole, at = self._places_of(cells)
-        by_bound = [own.transpose(2, 0, 1) for own in (whole.left_of_min, whole.left_of_max)]
-        _, rows, columns = by_bound[0].shape
-        found = []
-        for bound in bounds:
-            before = bound * (rows * columns)
-            places = at + (before if isinstance(before, int) else before.take(cells.columns))
-            low, high = (own.take(places) for own in by_bound)
-            found.append((low, high))
-        return found
+        whole, rows, columns = self._places_of(cells)
+        own = [bound if isinstance(bound, int) else bound.take(cells.columns) for bound in bounds]
+        return [
+            (whole.left_of_min[rows, columns, at], whole.left_of_max[rows, columns, at])
+            for at in own
+        ]
 
-    def _places_of(self, cells: Cells) -> tuple[RoadExtents, NDArray[intp]]:
-        """Extents and, in their flattened arrays by participant and state, the places of cells."""
-        return self, cells.rows * self.left_of_min.shape[1] + cells.columns
+    def _places_of(self, cells: Cells) -> tuple[RoadExtents, NDArray[intp], NDArray[intp]]:
+        """Extents and, in their arrays, the rows and columns of cells."""
+        return self, cells.rows, cells.columns
 
     def from_middle(self, lane: NDArray[intp]) -> tuple[Floats, Floats]:
         """How far (m) left of the middle of one lane, given by column, bodies begin and end."""
@@ -164,11 +155,11 @@ class RoadExtents:
 
     def part(self, rows: NDArray[intp], columns: slice) -> RoadExtents:
         """The extents of some participants in a range of steps."""
-        return self._each(lambda values: part_of(values, rows, columns))
+        return self._each(lambda values: values[rows, columns])
 
     def at(self, rows: NDArray[intp], columns: NDArray[intp]) -> RoadExtents:
         """The extents at cells of the arrays, given by rows and columns of the same shape."""
-        return self._each(lambda values: at_columns(values, rows, columns))
+        return self._each(lambda values: values[rows, columns])
 
     def _each(self, own: Callable[[NDArray[Any]], NDArray[Any]]) -> RoadExtents:
         found = RoadExtents(**{name: own(getattr(self, name)) for name in _FIELDS})
@@ -203,15 +194,7 @@ class _LaidExtents(RoadExtents):
     """
 
     def __init__(self, whole: RoadExtents, laid: LaidOut) -> None:
-        self.__dict__.update(_whole=whole, _laid=laid, most_off_middle=whole.most_off_middle)
-
-    def from_bound(self, bound: NDArray[intp]) -> tuple[Floats, Floats]:
-        """How far (m) left of one lane bound, given by column, bodies begin and end."""
-        if bound.ndim > 1 and len(bound) != 1:
-            return super().from_bound(bound)
-        whole, laid, places = self.__dict__["_whole"], self.__dict__["_laid"], bound.ravel()
-        low, high = laid.at_third(places, whole.left_of_min, whole.left_of_max)
-        return low, high
+        self.__dict__.update(_whole=whole, _laid=laid)
 
     def part(self, rows: NDArray[intp], columns: slice) -> RoadExtents:
         """The extents of some participants in a range of steps."""
@@ -219,12 +202,9 @@ class _LaidExtents(RoadExtents):
             return super().part(rows, columns)
         return _LaidExtents(self.__dict__["_whole"], self.__dict__["_laid"].of_rows(rows))
 
-    def _places_of(self, cells: Cells) -> tuple[RoadExtents, NDArray[intp]]:
+    def _places_of(self, cells: Cells) -> tuple[RoadExtents, NDArray[intp], NDArray[intp]]:
         whole, laid = self.__dict__["_whole"], self.__dict__["_laid"]
-        places: NDArray[intp] = laid.rows.take(cells.rows)
-        places *= whole.left_of_min.shape[1]
-        places += laid.columns.take(cells.columns)
-        return whole, places
+        return whole, laid.rows[cells.rows], laid.columns[cells.columns]
 
     def __getattr__(self, name: str) -> NDArray[Any]:
         if name not in _FIELDS:
@@ -239,55 +219,16 @@ class _LaidExtents(RoadExtents):
     s, lane, lane_steps, off_middle = map(_derived, ("s", "lane", "lane_steps", "off_middle"))
 
 
-def at_columns(values: NDArray[Any], rows: NDArray[intp], columns: NDArray[intp]) -> NDArray[Any]:
-    """Values at rows and columns, with the memory order of arrays with a third axis kept."""
-    if values.ndim == 2:
-        return values[rows, columns]
-    by_lane = [own[rows, columns] for own in values.transpose(2, 0, 1)]
-    found: NDArray[Any] = np.array(by_lane).transpose(1, 2, 0)
-    return found
-
-
 def and_row(values: NDArray[Any], others: NDArray[Any], row: int) -> NDArray[Any]:
-    """All rows, followed by one row of ``others``; a third axis stays first in memory."""
-    own = slice(row, row + 1)
-    if values.ndim < 3:
-        return np.concatenate((values, others[own]))
-    by_lane = np.moveaxis(values, -1, 0), np.moveaxis(others, -1, 0)[:, own]
-    return np.moveaxis(np.concatenate(by_lane, axis=1), 0, -1)
-
-
-def part_of(values: NDArray[Any], rows: NDArray[intp], columns: slice) -> NDArray[Any]:
-    """Some rows and a range of columns; a third axis stays first in memory."""
-    if values.ndim == 2:
-        return values[rows, columns]
-    by_lane = np.moveaxis(values, -1, 0)[:, :, columns]
-    return np.moveaxis(np.take(by_lane, rows, axis=1), 0, -1)
+    """All rows, followed by one row of ``others``."""
+    return np.concatenate((values, others[row : row + 1]))
 
 
 def _at_bound(left_of: Floats, bound: NDArray[intp]) -> Floats:
     """The values at one bound (last axis), given by column, or by row and column."""
     rows, columns = left_of.shape[:2]
-    values: Floats
-    if (bound.ndim > 1 and len(bound) != 1) or not columns:
-        values = left_of[np.arange(rows)[:, None], np.arange(columns), bound]
-        return values
-    # Ego seldom changes lanes, so the values of one bound are contiguous
-    of_column = bound if bound.ndim == 1 else bound[0]
-    is_new = of_column[1:] != of_column[:-1]
-    if not np.count_nonzero(is_new):
-        return left_of[:, :, int(of_column[0])]
-    if rows == 1:
-        places = of_column * columns + np.arange(columns)
-        of_bound: Floats = left_of.transpose(2, 0, 1).take(places)[None]
-        return of_bound
-    changes = (is_new.nonzero()[0] + 1).tolist()
-    starts, ends = [0, *changes], [*changes, columns]
-    parts = [
-        left_of[:, start:end, number]
-        for start, end, number in zip(starts, ends, of_column[starts].tolist(), strict=True)
-    ]
-    return np.concatenate(parts, axis=1)
+    values: Floats = left_of[np.arange(rows)[:, None], np.arange(columns), bound]
+    return values
 
 
 def road_extents(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
@@ -122,7 +123,7 @@ class RoadPlaces(KeepsResults):
         )
         flags: Flags = close & self.tracks.of_type("vulnerable_user")[:, None]
         others = Cells.at(close & self.in_traffic[:, None] & ~flags & ~self.on_lanes)
-        flags.ravel()[others.places] = np.cos(others.of(self.extents.turned)) < _ONCOMING_COSINE
+        np.put(flags, others.places, np.cos(others.of(self.extents.turned)) < _ONCOMING_COSINE)
         rails = self.tracks.of_type("rail_vehicle").nonzero()[0]
         if len(rails):
             flags[rails] |= self._next_to_lanes(rails)
@@ -224,7 +225,7 @@ def near_road(
     fastest = float(tracks.fastest.max(initial=0.0))
     beyond = max(limits.near_m, (2 * fastest + 1.0) * limits.catching_up_s) + reach
     around = road.line.surroundings(_farthest_off(road, limits) + reach, beyond)
-    near = around.holds(tracks.x[at], tracks.y[at])
+    near: Flags = shapely.contains_xy(around, tracks.x[at], tracks.y[at])
     if np.array_equal(near, tracks.present[at]):
         return near
     soon = int((limits.away_s + _SOON_S) / step_s) + 1

@@ -23,7 +23,6 @@ from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_columns import (
     check_arrays,
     joined_columns,
-    joined_lines,
     joined_rows,
 )
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
@@ -43,7 +42,6 @@ from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.resource_limits import CHOICES
 from rulec.trace import Trace
-from rulec.trace.formats.alike_lines import LineBlock
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
 from rulec.trace.trace_columns import TraceCells, TraceColumns
 from rulec.trace.trace_model import check_frame, check_presence
@@ -134,9 +132,7 @@ def verify_items(
     judged: tuple[Items, Iterable[Answer]] | None = None
     failed = None
     try:
-        if isinstance(items, LineBlock):
-            judged = items, _verify_lines(items, rulebook)
-        elif isinstance(items, Block):
+        if isinstance(items, Block):
             judged = _verify_block(items, rulebook)
     except Exception as problem:
         failed = problem
@@ -158,18 +154,6 @@ def _with_others(
         left = [start + number for number, answer in enumerate(some) if answer is None]
         others = iter(verify_chunk([block[place] for place in left], rulebook))
         yield from [next(others) if answer is None else answer for answer in some]
-
-
-def _verify_lines(block: LineBlock, rulebook: CompiledRulebook) -> Sequence[Answer]:
-    answers: list[Answer | None] = [None] * len(block)
-    for lines in block.alike:
-        # Irregularities are reported line by line.
-        with suppress(*IRREGULAR):
-            joined = joined_lines(block, lines, rulebook.vocabulary)
-            _fill(answers, lines.lines.tolist(), joined, rulebook)
-    left = [place for place, answer in enumerate(answers) if answer is None]
-    others = iter(verify_chunk([block[place] for place in left], rulebook))
-    return [next(others) if answer is None else answer for answer in answers]
 
 
 def _fill(

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from rulec.array_types import Flags
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
-from rulec.monitoring.batch.joined.joined_columns import joined_lines, joined_rows
+from rulec.monitoring.batch.joined.joined_columns import joined_rows
 from rulec.monitoring.batch.joined.joined_states import joined_states
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, with_all_values
 from rulec.monitoring.moments.exposure import Exposure, alike_exposures
@@ -21,7 +20,6 @@ from rulec.monitoring.moments.name_tables import NameTables, tables_of
 from rulec.monitoring.moments.trace_truth import TraceTruth
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.trace import Trace
-from rulec.trace.formats.alike_lines import LineBlock
 from rulec.trace.formats.table_blocks import Block, BlockPresence
 from rulec.trace.partly_known.partly_known_values import EnumeratedChoice, Truth
 from rulec.trace.trace_arrays import TraceArrays
@@ -129,18 +127,11 @@ def _alike_traces(
 
     There may be further traces of the same shape among them.
     """
-    makers: list[tuple[Sequence[int], Callable[[], JoinedTraces]]] = []
     if isinstance(items, Block) and items.outline is not None:
         for own in _shapes(items, items.outline):
-            makers += [(own, partial(joined_rows, items, items.outline, np.array(own), vocabulary))]
+            with suppress(UnencodableError):
+                yield own, joined_rows(items, items.outline, np.array(own), vocabulary)
         wanted = [place for place in wanted if place in items.partial]
-    elif isinstance(items, LineBlock):
-        for lines in items.alike:
-            makers += [(lines.lines.tolist(), partial(joined_lines, items, lines, vocabulary))]
-        wanted = [place for place in wanted if items.items[place] is not None]
-    for places, joined in makers:
-        with suppress(UnencodableError):
-            yield places, joined()
     shapes: dict[object, tuple[list[int], list[Trace]]] = {}
     for place in wanted:
         trace = items[place]

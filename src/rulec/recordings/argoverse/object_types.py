@@ -6,6 +6,7 @@ Sources: `av2.datasets.motion_forecasting.data_schema.ObjectType`, and
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
@@ -17,7 +18,6 @@ from numpy.typing import NDArray
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable
 from rulec.recordings.encodings.file_values import short
 from rulec.recordings.recording import StatedError
-from rulec.trace.plain_arrays import most_frequent
 
 EGO_SIZE_M = 4.877, 2.0
 """Length and width (m) of Argoverse's car, a Ford Fusion Hybrid, from `EGO_VEHICLE` annotations."""
@@ -115,4 +115,5 @@ def tracks_in(
             row = int(rows[twice[0] + 1])
             why = f"`{short(name)}` is twice in {called.format(moments[row])}"
             raise table.refused(row, why)
-        yield name, kind.names[most_frequent(kind.codes[rows])], rows
+        ((code, _),) = Counter(kind.codes[rows].tolist()).most_common(1)
+        yield name, kind.names[code], rows

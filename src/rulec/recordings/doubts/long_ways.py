@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from rulec.recordings.polylines import far_apart, noise_of
 from rulec.recordings.recording import Points
 from rulec.recordings.track import Track
-from rulec.trace.plain_arrays import median
 
 _NOISES = 10.0
 """A way of so many times the noise is off in its direction by 8°, and hardly in its length."""
@@ -34,7 +33,7 @@ def long_ways(track: Track) -> LongWays:
     ways: Points = np.diff(places, axis=0)
     rows: NDArray[intp] = np.arange(len(places))
     least = _NOISES * noise_of(places)
-    if least > median(np.hypot(*ways.T)):
+    if least > float(np.median(np.hypot(*ways.T))):
         rows = far_apart(places, least)
         ways = np.diff(places[rows], axis=0)
     return LongWays(track, rows, ways)

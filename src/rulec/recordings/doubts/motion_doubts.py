@@ -23,7 +23,6 @@ from rulec.recordings.mending.derived_motion import accelerations_of, along, vel
 from rulec.recordings.polylines import places_in, wrapped
 from rulec.recordings.recording import Lanelet, Participant, Recording, is_lane
 from rulec.recordings.track import Track, TrackStates
-from rulec.trace.plain_arrays import median, quantile
 
 _MOST_MPS = 150.0
 """The highest plausible speed: no vehicle on a road drives 540 km/h."""
@@ -126,13 +125,13 @@ def limit_doubts(recording: Recording, tracks: Sequence[Track]) -> Iterator[str]
     if len(tracks) < _FEWEST_FAST:
         return
     most, least = _shares(tracks, recording.step_s, lanes, limits)
-    if len(most) >= _FEWEST_FAST and (usual := median(np.array(most))) > _TOO_FAST:
+    if len(most) >= _FEWEST_FAST and (usual := float(np.median(np.array(most)))) > _TOO_FAST:
         yield (
             f"half of the vehicles drive {usual:.2g} times the limit or faster: limits "
             "may be in another unit, such as mph or m/s in the place of km/h"
         )
     is_round = (np.abs(limits - np.round(limits / _ROUND_MPS) * _ROUND_MPS) < _ALMOST_MPS).all()
-    fast = quantile(np.array(least), _FAST) if least else np.inf
+    fast = float(np.quantile(np.array(least), _FAST)) if least else np.inf
     if is_round and len(least) >= _FEWEST_SLOW and fast < _TOO_SLOW:
         yield (
             f"nine in ten vehicles drive {fast:.2g} times the limit or slower, "
@@ -172,7 +171,7 @@ def _shares(
         np.minimum.at(lowest, rows, limits[lane])
         on = highest > 0
         for share, limit in zip(shares, (highest, lowest), strict=True):
-            share.append(quantile(speeds[on] / limit[on], _FAST))
+            share.append(float(np.quantile(speeds[on] / limit[on], _FAST)))
     return shares
 
 
@@ -215,7 +214,7 @@ def with_doubts(
     recording = replace(recording, remarks=(*recording.remarks, *doubts)) if doubts else recording
     if len(tracks) < _FEWEST_BODIES:
         return recording
-    angle = median(np.array([_askew_deg(moved) for moved in tracks]))
+    angle = float(np.median(np.array([_askew_deg(moved) for moved in tracks])))
     if angle > _ACROSS_DEG:
         why = (
             f"headings do not fit the motion: vehicles move {angle:.0f}° away from them in the "
@@ -229,13 +228,13 @@ def with_doubts(
             f"{recording.step_s:.4g} s, or units of speeds or places, are wrong"
         )
         raise refused(why, help_text=_way_out(factor, recording))
-    remarks = (*recording.remarks, *_doubts(tracks, recording, angle, median(ratios)))
+    remarks = (*recording.remarks, *_doubts(tracks, recording, angle, float(np.median(ratios))))
     return replace(recording, remarks=remarks) if remarks != recording.remarks else recording
 
 
 def _contradiction(ratios: NDArray[float64]) -> float:
     """The factor by which the speeds of most bodies contradict their places; 0 if they do not."""
-    low, middle, high = (quantile(ratios, part) for part in (1 - _MOST, 0.5, _MOST))
+    low, middle, high = (float(np.quantile(ratios, part)) for part in (1 - _MOST, 0.5, _MOST))
     return middle if low > _CONTRADICTING or 0 < high < 1 / _CONTRADICTING else 0.0
 
 
@@ -268,7 +267,7 @@ def _doubts(
 ) -> Iterator[str]:
     if angle > _ASKEW_DEG:
         yield f"vehicles move {angle:.0f}° off their headings, which may be in degrees"
-    fastest = median(np.array([_mean_mps(moved, recording.step_s) for moved in tracks]))
+    fastest = float(np.median(np.array([_mean_mps(moved, recording.step_s) for moved in tracks])))
     if fastest > _FASTEST_MPS:
         yield (
             f"half of the vehicles move at {fastest * KMH_PER_MPS:,.0f} km/h or more: columns, or "
@@ -285,7 +284,7 @@ def _doubts(
         yield "most vehicles are wider than long: lengths and widths may be exchanged"
     cars = (body.states for body in recording.participants if body.type == "car")
     lengths = [states.track.length for states in cars if isinstance(states, TrackStates)]
-    if lengths and (middle := median(np.array(lengths))) > _LONGEST_CAR_M:
+    if lengths and (middle := float(np.median(np.array(lengths)))) > _LONGEST_CAR_M:
         yield f"cars are {middle:.3g} m long in the median: lengths may be in feet or centimetres"
 
 

@@ -17,7 +17,6 @@ from rulec.recordings.polylines import arc_lengths, places_in
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
 from rulec.recordings.recording_messages import OTHER_NET
 from rulec.recordings.track import TrackStates
-from rulec.trace.plain_arrays import distinct
 
 NEAR_M = 50.0
 """The largest plausible distance of participants from the roads."""
@@ -171,7 +170,7 @@ class _Roads:
         rows, lanes = places_in(self._areas, *moves[:, :2].T)
         on, along = np.zeros((2, len(moves)), dtype=bool)
         on[rows] = True
-        for lane in distinct(lanes).tolist():
+        for lane in np.unique(lanes).tolist():
             there = rows[lanes == lane]
             along[there] |= _leads(self._middles[lane], moves[there])
         begins = np.cumsum([0, *map(len, bodies[:-1])])
@@ -202,7 +201,7 @@ def _moves(moved: LongWays) -> Moves:
     places = moved.track.rows[moved.rows, :2]
     driven = arc_lengths(places)
     rows = np.searchsorted(driven, np.linspace(0.0, driven[-1], _MOST_PLACES))
-    some = places[distinct(rows)]
+    some = places[np.unique(rows)]
     return np.column_stack((some[:-1], np.diff(some, axis=0)))
 
 

@@ -18,7 +18,6 @@ from rulec.recordings.osi.message_times import TimeGrid
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lamp, Participant, Points
 from rulec.recordings.track import Track, tracked
-from rulec.trace.plain_arrays import median
 
 _CARS = ("small_car", "compact_car", "car", "luxury_car", "van")
 _KINDS: Mapping[str, str] = {
@@ -141,7 +140,9 @@ class MovingObject:
         """The medians of the lengths and widths in its messages; None if no message has both."""
         sizes = np.array(self.rows).reshape(-1, _NUMBERS)[:, _MOTION:]
         known = sizes[sizes.min(axis=1) > 0]
-        return (median(known[:, 0]), median(known[:, 1])) if len(known) else None
+        return (
+            (float(np.median(known[:, 0])), float(np.median(known[:, 1]))) if len(known) else None
+        )
 
 
 def _kind_of(fields: Fields) -> str:

@@ -30,7 +30,6 @@ from rulec.recordings.recording import OBSTACLE_TYPES, Lamp, Participant, id_ord
 from rulec.recordings.track import Track, tracked
 from rulec.recordings.tracks.road_user_types import TYPES, USUAL_TYPE, type_of, usual_size
 from rulec.recordings.tracks.track_rows import MOVING_MPS, TrackRows, check_rows, speeds_that_differ
-from rulec.trace.plain_arrays import distinct
 
 HeadingAt = Callable[[float, float], float]
 
@@ -331,7 +330,7 @@ def _rough_tracks(rows: TrackRows, tracks: Sequence[NDArray[np.intp]]) -> list[i
     number = np.arange(len(tracks)).repeat([len(own) for own in tracks])
     bends = bends_of(rows.times.steps[order], rows.x[order], rows.y[order])
     rough = (bends > FARTHER_M**2) & (number[2:] == number[:-2])
-    numbers: list[int] = distinct(number[:-2][rough]).tolist()
+    numbers: list[int] = np.unique(number[:-2][rough]).tolist()
     return numbers
 
 

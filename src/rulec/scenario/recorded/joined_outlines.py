@@ -75,11 +75,6 @@ class JoinedOutlines:
         self, values: NDArray[float64]
     ) -> tuple[NDArray[float64], NDArray[float64]]:
         """Least and greatest of the corners' values (a row per coordinate), a row per outline."""
-        count = int(self.counts[0])
-        if (self.counts == count).all():
-            # Corner by corner, many outlines at once: faster than outline by outline
-            corners = np.stack([values[:, number::count] for number in range(count)])
-            return corners.min(axis=0).T, corners.max(axis=0).T
         bounds = (f.reduceat(values, self.starts, axis=1).T for f in (np.minimum, np.maximum))
         least, greatest = bounds
         return least, greatest

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import groupby, pairwise
 from operator import itemgetter
 
@@ -21,11 +20,9 @@ from numpy.typing import NDArray
 from rulec.array_types import Floats
 from rulec.recordings.polylines import densified, densified_lines
 from rulec.recordings.recording import Lanelet, Points, Recording
-from rulec.scenario.recorded.borders import Borders
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at
 from rulec.scenario.recorded.route import lanelet_length, lanes_beside
-from rulec.trace.plain_arrays import distinct, median
 
 NARROWEST_LANE_M = 1.0
 """Where a lane is narrower than this (m), it has not begun yet or has ended."""
@@ -63,10 +60,6 @@ class Lanes:
     straight: Floats
     there: NDArray[np.bool_]
 
-    @cached_property
-    def _borders(self) -> Borders:
-        return Borders(self.s)
-
     def straightened(self, places: Points) -> Points:
         """The scenario's ``d`` of places (rows ``s``, ``d``), as one column."""
         left_of = self.from_bounds(places)
@@ -81,18 +74,8 @@ class Lanes:
 
     def from_bounds(self, places: Points) -> Points:
         """How far (m) each place (row) is to the left of each bound (column)."""
-        at, off = places[:, 0], places[:, 1]
-        # NaN may get any piece: the result is NaN in any case
-        before = self._piece(at)
-        start = self.s.take(before)
-        part = np.minimum(np.maximum((at - start) / (self.s.take(before + 1) - start), 0.0), 1.0)
-        # In memory the axis of the bounds comes first
-        first, second = (self.bounds.T.take(number, axis=1) for number in (before, before + 1))
-        first *= 1 - part
-        second *= part
-        first += second
-        left_of: Points = np.subtract(off, first, out=first).T
-        return left_of
+        at, off = places.T
+        return np.column_stack([off - np.interp(at, self.s, bound) for bound in self.bounds.T])
 
     def existing_at(self, s: Floats) -> NDArray[np.bool_]:
         """Mask of the lanes (last axis, from the right) that exist at places."""
@@ -100,10 +83,7 @@ class Lanes:
 
     def pieces_at(self, s: Floats) -> NDArray[intp]:
         """The index of the interval of ``self.s`` at each place; the nearest beyond the ends."""
-        return self._piece(np.where(np.isnan(s), 0.0, s))
-
-    def _piece(self, s: Floats) -> NDArray[intp]:
-        return np.minimum(self._borders.before(s), len(self.s) - 2)
+        return pieces_at(self.s, s)
 
     def missing(
         self, start: float, end: float, shift: float
@@ -140,7 +120,7 @@ def lanes_along(
     """
     lanelets = [recording.lanelets[number] for number in way]
     borders = borders_along(lanelets, line) if borders is None else borders
-    grid = distinct(np.concatenate([np.arange(0.0, line.length, _EVERY_M), borders]))
+    grid = np.unique(np.concatenate([np.arange(0.0, line.length, _EVERY_M), borders]))
     grid = grid[np.concatenate(([True], np.diff(grid) > _HAIR_M))]
     own_number = np.zeros(len(way), dtype=int) if numbers is None else np.array(numbers)
     strip = _Strip(recording, lanelets, line, borders, grid, own_number=own_number)
@@ -213,7 +193,7 @@ def _usual_widths(
         if own[at]:
             yield float(np.interp(ego_s, grid, width))
         else:
-            yield median(width[:-1][own]) if own.any() else NARROWEST_LANE_M
+            yield float(np.median(width[:-1][own])) if own.any() else NARROWEST_LANE_M
 
 
 def _by_number(

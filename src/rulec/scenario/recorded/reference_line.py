@@ -10,10 +10,12 @@ Beyond its ends the line continues straight.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
@@ -27,10 +29,7 @@ from rulec.recordings.polylines import (
     wrapped,
 )
 from rulec.recordings.recording import Points
-from rulec.scenario.recorded.line_fans import LineFans, line_fans
-from rulec.scenario.recorded.line_surroundings import LineSurroundings, line_surroundings
-from rulec.scenario.recorded.sure_feet import MANY, PieceFans, sure_feet
-from rulec.trace.plain_arrays import distinct
+from rulec.trace.plain_arrays import ranges
 
 BEYOND_M = 2000.0
 """How far (m) the line continues straight beyond its ends."""
@@ -49,6 +48,13 @@ _SMOOTH_M = 5.0
 _STEP_M = 0.5
 _TURN_RAD = np.radians(5.0)
 _HAIR = 1e-9
+_MARGIN_M = 1e-5
+
+_AT_ONCE = 1 << 16
+"""Pairs of places and pieces that are looked at together, so that they stay in the cache."""
+
+_AROUND = 1.02
+"""An area around a line is so much wider, as its arcs are made of chords."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,10 +102,13 @@ class ReferenceLine:
 
     def coordinates(self, places: Points) -> Points:
         """Frenet coordinates ``s`` and ``d`` of places, one row each; NaN without a foot."""
-        coordinates, pieces = sure_feet(self.piece_fans, places)
-        left = (pieces < 0).nonzero()[0]
-        low = np.zeros(len(left), dtype=intp)
-        coordinates[left] = self._nearest(places[left], low, low + len(self.arc) - 1)
+        coordinates = np.empty((len(places), 2))
+        (first_normals, first_at), (last_normals, last_at) = self._ends
+        for part in _blocks(len(places), len(self.arc)):
+            away = places[part] - self.start[0]
+            may_be = away @ first_normals.T >= first_at - _MARGIN_M
+            may_be &= away @ last_normals.T <= last_at + _MARGIN_M
+            coordinates[part] = self._nearest(places[part], *may_be.nonzero())
         return coordinates
 
     def coordinates_near(
@@ -110,70 +119,73 @@ class ReferenceLine:
         ``counts``: to how many places, one after the other, each ``around`` and ``reach`` applies.
         """
         low, high = (self._piece(s).repeat(counts) for s in (around - reach, around + reach))
-        if len(places) < MANY:
-            return self._nearest(places, low, high)
-        coordinates, pieces = sure_feet(self.piece_fans, places)
-        left = ((pieces < low) | (pieces > high)).nonzero()[0]
-        coordinates[left] = self._nearest(places[left], low[left], high[left])
+        widths, coordinates = high - low + 1, np.empty((len(places), 2))
+        for part in _blocks(len(places), int(widths.max(initial=1))):
+            own, pieces = np.arange(len(widths[part])), ranges(low[part], widths[part])[0]
+            coordinates[part] = self._nearest(places[part], own.repeat(widths[part]), pieces)
         return coordinates
 
-    def surroundings(self, near_m: float, beyond_m: float) -> LineSurroundings:
-        """A filter for places within ``near_m`` of the line, up to ``beyond_m`` beyond its ends."""
+    def surroundings(self, near_m: float, beyond_m: float) -> shapely.Polygon:
+        """An area with all places within ``near_m`` of the line, up to ``beyond_m`` off its ends.
+
+        It is prepared, and hardly larger than needed.
+        """
         at = np.concatenate(([-beyond_m], self.arc[1:], [self.length + beyond_m]))
         pieces = self._piece(at)
-        return line_surroundings(
-            self.start[pieces] + (at - self.arc[pieces])[:, None] * self.ahead[pieces], near_m
-        )
+        corners = self.start[pieces] + (at - self.arc[pieces])[:, None] * self.ahead[pieces]
+        area = shapely.LineString(corners).buffer(near_m * _AROUND)
+        shapely.prepare(area)
+        return area
 
     def _piece(self, s: Floats) -> NDArray[intp]:
-        return self.piece_fans.at(s)
+        return np.maximum(self.arc.searchsorted(s, "right") - 1, 0)
 
     @cached_property
-    def _fans(self) -> LineFans:
-        slopes = np.stack((self.first, self.first + self.change), axis=1)
-        return line_fans(self.start, self.ahead, self.lengths, slopes)
+    def _columns(self) -> Floats:
+        """A column for each piece; the last row is how much farther (m) it is taken to be."""
+        more = np.zeros(len(self.arc))
+        more[[0, -1]] = _BESIDE_M
+        own = self.lengths, self.first, self.change, self.arc, more
+        return np.stack((*self.ahead.T, *self.start.T, *own))
 
     @cached_property
-    def piece_fans(self) -> PieceFans:
-        """The pieces in the form that ``sure_feet`` needs."""
-        own = self.lengths, self.first, self.change, self.arc
-        return PieceFans(np.stack((*self.ahead.T, *self.start.T, *own)))
+    def _ends(self) -> tuple[tuple[Points, Floats], ...]:
+        """The lines through both ends of each piece between which a foot on it may be.
 
-    def _nearest(self, places: Points, low: NDArray[intp], high: NDArray[intp]) -> Points:
-        """The coordinates of each place's nearest foot on the pieces from ``low`` to ``high``."""
-        if not len(places):
-            return np.empty((0, 2))
-        numbers, pieces = self._fans.candidates(places, low, high)
-        ux, uy, x, y, lengths, first, change, arc = self.piece_fans.columns.take(pieces, axis=1)
-        dx, dy = places[numbers, 0] - x, places[numbers, 1] - y
-        along = dx * ux + dy * uy
-        across = ux * dy - uy * dx
+        As unit normals (a row for each piece), and how far (m) the lines are along them.
+        """
+        left = np.stack((-self.ahead[:, 1], self.ahead[:, 0]), axis=1)
+        last = self.start + self.lengths[:, None] * self.ahead
+        found = []
+        for corners, slopes in ((self.start, self.first), (last, self.first + self.change)):
+            normals = (self.ahead + slopes[:, None] * left) / np.hypot(1.0, slopes)[:, None]
+            found.append((normals, ((corners - self.start[0]) * normals).sum(axis=1)))
+        return tuple(found)
+
+    def _nearest(self, places: Points, own: NDArray[intp], pieces: NDArray[intp]) -> Points:
+        """The coordinates of each place's nearest foot, of its ``own`` with each of ``pieces``."""
+        ux, uy, x, y, lengths, first, change, arc, more = self._columns.take(pieces, axis=1)
+        dx, dy = places[own, 0] - x, places[own, 1] - y
+        along, across = dx * ux + dy * uy, ux * dy - uy * dx
         turned_lengths = lengths - across * change
         with np.errstate(divide="ignore", invalid="ignore"):
             part = (along + across * first) / turned_lengths
-        good = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
-        at = good.nonzero()[0]
-        numbers, own, foot, across = numbers[at], pieces[at], part[at] * lengths[at], across[at]
-        # The same formula as in sure_feet, for bit-identical results
-        distance = np.sqrt(np.square(along[at] - foot) + np.square(across))
-        away = distance + np.where((own == 0) | (own == len(self.arc) - 1), _BESIDE_M, 0.0)
-        best = _least_of_each(numbers, away)
+        foot = part * lengths
+        distance = np.sqrt(np.square(along - foot) + np.square(across))
+        is_foot = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
+        nearest = np.lexsort((np.where(is_foot, distance + more, np.inf), own))
+        best = nearest[np.unique(own, return_index=True)[1]]
+        best = best[is_foot[best]]
         coordinates = np.full((len(places), 2), np.nan)
-        coordinates[numbers[best], 0] = arc[at[best]] + foot[best]
-        coordinates[numbers[best], 1] = np.copysign(distance[best], across[best])
+        coordinates[own[best], 0] = (arc + foot)[best]
+        coordinates[own[best], 1] = np.copysign(distance, across)[best]
         return coordinates
 
 
-def _least_of_each(groups: NDArray[intp], values: Floats) -> NDArray[intp]:
-    """The index of the first least value in each group; the values of a group are consecutive."""
-    if not len(groups):
-        return groups
-    begins = np.concatenate(([True], groups[1:] != groups[:-1]))
-    if begins.all():
-        return np.arange(len(groups))
-    least = np.minimum.reduceat(values, begins.nonzero()[0])[begins.cumsum() - 1]
-    at: NDArray[intp] = (values == least).nonzero()[0]
-    return at[np.concatenate(([True], groups[at[1:]] != groups[at[:-1]]))]
+def _blocks(count: int, width: int) -> Iterator[slice]:
+    """Slices of places with up to ``width`` pieces each."""
+    size = max(_AT_ONCE // width, 1)
+    return (slice(begin, begin + size) for begin in range(0, count, size))
 
 
 def reference_line(corners: Points) -> ReferenceLine:
@@ -257,7 +269,7 @@ def _bends(points: Points) -> NDArray[intp]:
     share = np.hypot(*steps.T) / _PIECE_M + turned / _TURN_RAD
     reached = np.concatenate(([0.0], share.cumsum()))
     wanted = np.linspace(0.0, reached[-1], int(np.ceil(reached[-1])) + 1)
-    numbers: NDArray[intp] = distinct(reached.searchsorted(wanted).clip(0, len(points) - 1))
+    numbers: NDArray[intp] = np.unique(reached.searchsorted(wanted).clip(0, len(points) - 1))
     return numbers
 
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import chain
 from pathlib import PurePath
-from types import ModuleType
-from typing import IO, TYPE_CHECKING, Any, cast
+from typing import IO, Any, cast
 
 import msgspec
 
@@ -28,9 +26,6 @@ from rulec.trace.formats.json_values import (
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
 from rulec.trace.trace_messages import NOT_A_TRACE
 from rulec.trace.trace_model import Ending, State, Trace, ending_in_file, plain_step_s
-
-if TYPE_CHECKING:
-    from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
 
 _INTERVAL = 'an interval is written {"from": 1, "to": 2.5}'
 _LONGEST_HEAD_BYTES = 1 << 16
@@ -75,12 +70,8 @@ _OF_TEXTS = (".md", ".markdown", ".txt", ".rst", ".html", ".py", ".rules", ".tom
 _OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 
 
-def read_chunks(
-    stream: IO[bytes], file: str, *, together: bool = False
-) -> Iterator[Sequence[Trace | RulecError]]:
+def read_chunks(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
     """Read traces, one per line, one block of the stream at a time.
-
-    With ``together``, traces whose states are written alike become columns of a ``LineBlock``.
 
     A block of a pipe is what has arrived. Each line that is not blank gives a Trace, or the
     RulecError (R0501, R0718) that says why it is not one; a stream without any trace gives one
@@ -98,44 +89,29 @@ def read_chunks(
             if error is not None:
                 yield [error]
                 return
-        first = number + 1
-        number += len(lines)
-        written = [index for index, line in enumerate(lines) if line and not line.isspace()]
-        if not written:
-            continue
-        chunk: list[Trace | RulecError | None] = []
-        large = {index for index in written if _objects_in(lines[index], most) > most}
-        regular = (
-            [b"" if n in large else whole for n, whole in enumerate(lines)] if large else lines
-        )
-        alike = _alike(regular, together)
-        known = set(chain.from_iterable(alike_lines.lines.tolist() for alike_lines in alike))
-        places: dict[int, int] = {}
+        chunk: list[Trace | RulecError] = []
         with no_garbage_collection():
-            for index in written:
-                line, place = lines[index], SourceLocation(file, first + index)
-                trace: Trace | RulecError | None = None
-                if index in large:
-                    trace = STATES.exceeded(place)
-                elif index not in known:
-                    trace = _trace(line, place, read_state)
+            for line in lines:
+                number += 1
+                if not line or line.isspace():
+                    continue
+                place = SourceLocation(file, number)
+                is_large = _objects_in(line, most) > most
+                trace = STATES.exceeded(place) if is_large else _trace(line, place, read_state)
+                is_refused = isinstance(trace, RulecError)
                 if torn is not None:
-                    if isinstance(trace, RulecError) and not line.startswith(b"{"):
+                    if is_refused and not line.startswith(b"{"):
                         torn.goes_on = True
                         continue
                     chunk.append(torn.error(at_the_end=False))
                     torn = None
-                refused = isinstance(trace, RulecError) and index not in large
-                if refused and json_line_problems.is_beginning(line):
+                if is_refused and not is_large and json_line_problems.is_beginning(line):
                     torn = _Torn(line, place)
                 else:
-                    places[index] = len(chunk)
                     chunk.append(trace)
         result += len(chunk)
-        if alike:
-            yield _block(chunk, alike, lines, places, SourceLocation(file, first - 1))
-        elif chunk:
-            yield cast("list[Trace | RulecError]", chunk)
+        if chunk:
+            yield chunk
     if torn is not None:
         yield [torn.error(at_the_end=True)]
     elif not result:
@@ -145,52 +121,6 @@ def read_chunks(
 def _objects_in(line: bytes, most: int) -> int:
     """The number of JSON objects in a line; 0 if it is too short to contain more than ``most``."""
     return line.count(b"{") if len(line) > 2 * most else 0
-
-
-def _alike(lines: Sequence[bytes], together: bool) -> Sequence[AlikeLines]:
-    if not together:
-        return []
-    return list(_columns().alike_lines(lines, _heading))
-
-
-def _columns() -> ModuleType:
-    """What reads lines as columns: it loads NumPy, 60 ms, which a running trace does not need."""
-    from rulec.trace.formats import alike_lines
-
-    return alike_lines
-
-
-def _block(
-    items: Sequence[Trace | RulecError | None],
-    alike: Sequence[AlikeLines],
-    lines: Sequence[bytes],
-    places: Mapping[int, int],
-    before: SourceLocation,
-) -> LineBlock:
-    """The items of the lines after ``before``; ``places`` maps a line's index to its item's."""
-    line_at = {place: index for index, place in places.items()}
-    first = (before.line or 0) + 1
-
-    def decode(place: int) -> Trace | RulecError:
-        index = line_at[place]
-        return _trace(lines[index], replace(before, line=first + index), _StateReader())
-
-    columns = _columns()
-    own = [columns.placed_among(places, alike_lines, first) for alike_lines in alike]
-    block: LineBlock = columns.LineBlock(items, decode, own)
-    return block
-
-
-def _heading(line: bytes) -> tuple[str, float, Mapping[str, str], Ending] | None:
-    """A trace's name, step, objects and end; None if anything else but its states is unusual."""
-    try:
-        read = _OUTLINE_DECODER.decode(line)
-    except (ValueError, RecursionError):  # msgspec's errors are ValueErrors
-        return None
-    is_usual = read.told is None and not read.present
-    if not is_usual or not 0 < read.seconds < math.inf or may_be_no_float(line):
-        return None
-    return str(read.id), read.seconds, read.objects, read.ending
 
 
 @dataclass(slots=True)

@@ -10,8 +10,6 @@ from rulec.diagnostics import SourceLocation
 
 _BLOCK_BYTES = 1 << 22
 
-_LONG_LINE = 1 << 10
-
 _MOST_SKIPPED = 1 << 32
 """Bytes of an overlong line that are skipped; one that is longer is taken to never end."""
 
@@ -34,7 +32,7 @@ def lines_as_they_come(stream: IO[bytes], longest: int) -> Iterator[list[bytes]]
     parts: list[bytes] = []
     size = 0
     while size <= _MOST_SKIPPED and (block := arriving.read1(_BLOCK_BYTES)):
-        first, *more = _split(block)
+        first, *more = block.split(b"\n")
         if size <= longest:
             parts.append(first)
         size += len(first)
@@ -43,18 +41,6 @@ def lines_as_they_come(stream: IO[bytes], longest: int) -> Iterator[list[bytes]]
             parts, size = [more[-1]], len(more[-1])
     if size:
         yield [b"".join(parts)]
-
-
-def _split(block: bytes) -> list[bytes]:
-    if block.find(b"\n") < _LONG_LINE:
-        return block.split(b"\n")
-    # The same result, but five times as fast as ``split`` for long lines.
-    lines, begin = [], 0
-    while (end := block.find(b"\n", begin)) >= 0:
-        lines.append(block[begin:end])
-        begin = end + 1
-    lines.append(block[begin:])
-    return lines
 
 
 def not_utf8(line: bytes) -> int | None:

@@ -49,16 +49,16 @@ def read_traces(path: str | Path, form: Format | None = None) -> Iterator[Trace 
 
 
 def read_chunks(
-    stream: IO[bytes], file: str, form: Format, *, together: bool = False
+    stream: IO[bytes], file: str, form: Format
 ) -> Iterator[Sequence[Trace | RulecError]]:
     """Read the traces of a stream in chunks; chunks of a table may be a ``Block``.
 
-    If they are to be judged ``together``, chunks of JSON may be a ``LineBlock``. A bad trace is
-    replaced by the RulecError that says why. Raises RulecError R0706 if Parquet cannot be read.
+    A bad trace is replaced by the RulecError that says why. Raises RulecError R0706 if Parquet
+    cannot be read.
     """
     with contained("not read", SourceLocation(file)):
         if form == "jsonl":
-            yield from json_lines.read_chunks(stream, file, together=together)
+            yield from json_lines.read_chunks(stream, file)
         else:
             yield from (read_csv if form == "csv" else read_parquet)(stream, file)
 

@@ -3,7 +3,6 @@
 from dataclasses import replace
 from itertools import groupby, pairwise
 from math import atan2, pi, radians, sqrt
-from unittest import mock
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks.matching import map_matching
 from rulec.extraction.tracks.matching.lane_candidates import NEAR_M, SIGMA_M, candidates
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.matching.map_matching import (
@@ -218,13 +216,10 @@ def test_many_drives_at_once_take_the_cheapest_paths_of_each(one, other, gaps, s
     tracks, graph = tracks_of(found, USUAL), LaneletGraph(found)
     own = candidates(graph, tracks)
     by_hand = [list(cheapest_by_hand(own, tracks, graph, row)) for row in range(len(bodies))]
-    # As arrays, and number by number
-    for few in (0, 1 << 20):
-        with mock.patch.object(map_matching, "FEW_TRANSITIONS", few):
-            matching = MapMatching(found, tracks, graph)
-            for row, expected in enumerate(by_hand):
-                lanelets = [part.chain[k] for part in matching.of(row) for k in part.places]
-                assert lanelets == expected
+    matching = MapMatching(found, tracks, graph)
+    for row, expected in enumerate(by_hand):
+        lanelets = [part.chain[k] for part in matching.of(row) for k in part.places]
+        assert lanelets == expected
 
 
 def test_the_grid_is_consistent():

@@ -28,7 +28,6 @@ from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import RAMPS
 from rulec.trace.cells import Cells
 from rulec.trace.partly_known.partly_known_values import Truth
-from rulec.trace.plain_arrays import distinct
 
 _HALF_M = 4.0
 """A vehicle farther beyond the middle of a road is on none of its lanes, or on the second one."""
@@ -191,7 +190,7 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     cells = Cells.at(comes & (closing | (station == relations.BESIDE)))
     if not len(cells):
         return np.zeros_like(comes), np.zeros(context.states, dtype=bool)
-    gets_past, unsure = map(cells.of, _gets_past(context, distinct(cells.rows), faster_mps, over))
+    gets_past, unsure = map(cells.of, _gets_past(context, np.unique(cells.rows), faster_mps, over))
     next_lane, lanes = cells.of(_next_lane(context)), context.existing_lanes.shape[1]
     there = (next_lane >= 0) & (next_lane < lanes)
     reaches = there & is_in(cells.of(context.lanes_within[0]), np.clip(next_lane, 0, lanes - 1))

@@ -209,7 +209,7 @@ def _at_kerb(context: DriveContext, rows: NDArray[intp], on_lanes: Flags) -> Fla
         context, own.in_rows(rows, len(context.relevant))
     )
     from_edge = np.minimum((low_r + high_r) / 2, -(low_l + high_l) / 2)
-    at_kerb.ravel()[own.places] = from_edge <= _AT_KERB_M
+    np.put(at_kerb, own.places, from_edge <= _AT_KERB_M)
     return at_kerb
 
 
@@ -282,7 +282,7 @@ def _crossing_uses(
     on = crossing & ((cells.of(context.on_lanes) & ~at_edge) | ~walks | approaches)
     soon = approaches & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)
-    uses.ravel()[own.places] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
+    np.put(uses, own.places, np.select([on, enters, soon, waits], [4, 3, 2, 1], 0))
     return uses
 
 

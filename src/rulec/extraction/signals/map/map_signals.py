@@ -46,7 +46,6 @@ from rulec.recordings.recording import (
 )
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.partly_known.partly_known_values import Truth
-from rulec.trace.plain_arrays import distinct
 
 NO_LIMIT_KMH = 1000.0
 NO_CROSSING_M = 1000.0
@@ -155,7 +154,7 @@ def _holds_to_line(context: DriveContext, signs: Set[str], *, of_junction: bool)
     for piece, row in enumerate(context.road.rows):
         if any(lanelet is not None and signs & lanelet.signs for lanelet in row):
             begins = float(context.road.borders[piece])
-            for lane in distinct(context.ego_lane).tolist():
+            for lane in np.unique(context.ego_lane).tolist():
                 if signs & context.road.lanelet(piece, lane).signs:
                     first, line = stop_line(context, piece, lane)
                     if of_junction:

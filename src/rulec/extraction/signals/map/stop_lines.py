@@ -15,7 +15,6 @@ from rulec.extraction.computed_once import once, once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.measured_numbers import own_front, own_speed
 from rulec.recordings.recording import STOP_SIGNS, Lanelet
-from rulec.trace.plain_arrays import distinct
 
 LINE_REACH_M = 40.0
 
@@ -49,7 +48,7 @@ def lines_on_road(context: DriveContext) -> Sequence[tuple[int, int, Lanelet]]:
 def own_lines(context: DriveContext, counts: Callable[[Lanelet], object]) -> Iterator[OwnLine]:
     """The lines of the lanelets that count, in lanes that ego is ever in, the farthest first."""
     lines = lines_on_road(context)
-    lanes = distinct(context.ego_lane).tolist() if lines else ()
+    lanes = np.unique(context.ego_lane).tolist() if lines else ()
     for piece, lane, lanelet in lines:
         if lane in lanes and counts(lanelet):
             line = stop_line(context, piece, lane)

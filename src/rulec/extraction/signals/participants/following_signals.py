@@ -28,7 +28,6 @@ from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.partly_known.partly_known_values import Truth
-from rulec.trace.plain_arrays import begin_runs, distinct
 
 _AWAY_MPS = 0.3
 
@@ -72,7 +71,7 @@ def _ahead_for(context: DriveContext) -> Measured:
 
 def _since(context: DriveContext, cells: Cells) -> tuple[NDArray[intp], Flags]:
     """The first states of runs of cells, and whether the participant was seen just before."""
-    spans, begins = context.spans, begin_runs(cells.places)
+    spans, begins = context.spans, (np.diff(cells.places, prepend=-2) > 1)
     begins |= spans.begins_here[cells.columns]
     since = cells.columns[begins][begins.cumsum() - 1]
     before = context.relevant.take(cells.places - (cells.columns - since) - 1, mode="clip")
@@ -254,7 +253,7 @@ def _brief_and_slight(context: DriveContext, late: Cells, far_too_late: Flags) -
     """
     if not len(late):
         return far_too_late
-    is_first = begin_runs(late.places)
+    is_first = np.diff(late.places, prepend=-2) > 1
     is_first |= context.spans.begins_here.take(late.columns)
     begins = is_first.nonzero()[0]
     lengths = np.concatenate((begins[1:], (len(late),))) - begins
@@ -265,7 +264,7 @@ def _brief_and_slight(context: DriveContext, late: Cells, far_too_late: Flags) -
 
 def _stood_before(context: DriveContext, cells: Cells) -> Flags:
     """Mask of cells of participants that stand, and did for ``reaction_s`` or since first seen."""
-    rows = distinct(cells.rows)
+    rows = np.unique(cells.rows)
     stands = context.standing[rows]
     steps = context.steps_in(context.thresholds.reaction_s)
     moves_there = ~stands & ~np.isnan(context.extents.s_min[rows])

@@ -244,7 +244,7 @@ def _about_to_overtake(context: DriveContext) -> Truth:
     soon[rows] = context.going_along[rows] & context.spans.within(pulls_out[rows], steps)
     soon &= ~those_on_lanes(context, JOINING, soon)
     doubtful, asked = soon.copy(), Cells.at(soon & told)
-    doubtful.ravel()[asked.places] = ~_caught_up(context, asked)
+    np.put(doubtful, asked.places, ~_caught_up(context, asked))
     if lit.any():
         lost = told & lit & _ends_within(context, steps) & ~soon
         doubtful |= lost & ~those_on_lanes(context, JOINING, lost)

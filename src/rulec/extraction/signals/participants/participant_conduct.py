@@ -23,7 +23,6 @@ from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.partly_known.partly_known_values import Truth
-from rulec.trace.plain_arrays import distinct
 
 _ALONG = 0.5
 """Sine of the largest angle to the road at which a participant heads along it."""
@@ -49,7 +48,7 @@ def comes_towards(context: DriveContext) -> Flags:
     faces = _faces(context)
     comes = faces & (along * -KMH_PER_MPS >= context.thresholds.standing_kmh)
     others = Cells.at(faces & ~comes)
-    comes.ravel()[others.places] = _waits_elsewhere(context, others)
+    np.put(comes, others.places, _waits_elsewhere(context, others))
     return comes
 
 
@@ -78,7 +77,7 @@ def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
     round, is an obstacle in ego's lanes. One that faces ego and moves away from it reverses, or its
     box drifts: it counts as standing.
     """
-    rows = distinct(cells.rows)
+    rows = np.unique(cells.rows)
     # By its whole track: which of its places on the road are known depends on other drives
     slow = ~(context.tracks.speed[rows] * KMH_PER_MPS >= context.thresholds.standing_kmh)
     still = context.spans.all(slow)[rows.searchsorted(cells.rows), cells.columns]

@@ -7,14 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-from numpy import float64, intp
+from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Participant
-from rulec.trace.plain_arrays import distinct
 
 _THROUGH_M = 2.0
 """Who drives less far (m) through a junction between two states only touches its edge."""
@@ -50,7 +49,7 @@ def junction_stays(
         return
     at, where = places_in(areas, tracks.x[rows, columns], tracks.y[rows, columns])
     before, through = _between_states(areas, tracks, drive, _FASTEST_MPS * step_s)
-    for number in distinct(np.append(where, through)).tolist():
+    for number in np.unique(np.append(where, through)).tolist():
         inside, seen = np.zeros((2, *tracks.present.shape), dtype=bool)
         chosen = at[where == number]
         seen[rows[chosen], columns[chosen]] = True
@@ -84,28 +83,14 @@ def _between_states(
     far = (way > _THROUGH_M) & (way < most_m)
     rows, columns = (far & drive[:, :-1] & drive[:, 1:]).nonzero()
     ends = np.array([[array[rows, columns + k] for array in (tracks.x, tracks.y)] for k in (0, 1)])
-    at, number = _boxes_that_meet(shapely.bounds(areas), ends.min(axis=0), ends.max(axis=0))
-    ends = ends.transpose(2, 0, 1)[at]
-    steps, own = shapely.linestrings(ends), np.array(areas, dtype=object)
-    shapely.prepare(own)
-    crossed = shapely.intersects(own[number], steps)
+    ends = ends.transpose(2, 0, 1)
+    steps = shapely.linestrings(ends)
+    number, at = shapely.STRtree(steps).query(areas, predicate="intersects")
+    own = np.array(areas, dtype=object)[number]
+    crossed = shapely.length(shapely.intersection(own, steps[at])) >= _THROUGH_M
     for end in (0, 1):
-        points = shapely.points(ends[crossed, end])
-        crossed[crossed] = ~shapely.intersects(own[number[crossed]], points)
-    within = shapely.length(shapely.intersection(own[number[crossed]], steps[crossed]))
-    crossed[crossed] = within >= _THROUGH_M
+        crossed &= ~shapely.intersects(own, shapely.points(ends[at, end]))
     return (rows[at[crossed]], columns[at[crossed]]), number[crossed]
-
-
-def _boxes_that_meet(
-    areas: NDArray[float64], low: NDArray[float64], high: NDArray[float64]
-) -> tuple[NDArray[intp], NDArray[intp]]:
-    """Which of the boxes from ``low`` to ``high`` (2, n) meet which areas' bounds (m, 4)."""
-    met = [
-        ((high[0] >= left) & (low[0] <= right) & (high[1] >= bottom) & (low[1] <= top)).nonzero()[0]
-        for left, bottom, right, top in areas.tolist()
-    ]
-    return np.concatenate(met), np.repeat(np.arange(len(met)), list(map(len, met)))
 
 
 def _runs(flags: Flags) -> Iterator[tuple[int, int]]:

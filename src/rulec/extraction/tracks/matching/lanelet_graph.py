@@ -11,12 +11,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from rulec.extraction.computed_once import KeepsResults, kept
-from rulec.extraction.tracks.matching.lane_strips import LaneStrip
 from rulec.recordings.adjacency import bordering
 from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.scenario.recorded.route import lanelet_area, lanelet_length, lanes_beside
@@ -66,17 +63,6 @@ class LaneletGraph(KeepsResults):
     def areas(self) -> tuple[shapely.Polygon, ...]:
         """The areas of the lanes."""
         return tuple([lanelet_area(lanelet) for lanelet in self.lanes])
-
-    @cached_property
-    def bounds(self) -> NDArray[np.float64]:
-        """The bounding box of each lane's area: least x and y (m), greatest x and y."""
-        found: NDArray[np.float64] = shapely.bounds(np.array(self.areas, dtype=object))
-        return found
-
-    @kept
-    def strip(self, number: int) -> LaneStrip:
-        """A lane as a strip, given by its number among the lanes."""
-        return LaneStrip.of(self.lanes[number], self.areas[number])
 
     @kept
     def length(self, start: str) -> float:

@@ -20,7 +20,6 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
 
 import numpy as np
 from numpy import bool_, intp
@@ -31,7 +30,6 @@ from rulec.extraction.tracks.matching.lane_candidates import SIGMA_M, LaneCandid
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import Recording
-from rulec.trace.plain_arrays import distinct
 
 BETA_M = 2.0
 """The mean difference (m) between the way along lanelets and the way moved."""
@@ -44,10 +42,6 @@ BREAK_COST = 50.0
 
 _AT_ONCE = 1 << 19
 """Roughly the most transitions that are computed together."""
-
-
-FEW_TRANSITIONS = 16
-"""With at most this many transitions in a step, each is computed by itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,8 +150,6 @@ def likeliest_paths(
     if not len(begins):
         return np.empty(0, dtype=intp), begins
     starts, width = begins.nonzero()[0], int(found.counts.max())
-    if len(starts) * width**2 <= FEW_TRANSITIONS:
-        return _paths_one_by_one(found, places, begins, graph)
     lengths = np.diff(starts, append=len(begins))
     # All runs advance together step by step, the longest first: those that go on are the first rows
     longest = (-lengths).argsort(kind="stable")
@@ -202,52 +194,6 @@ def likeliest_paths(
     lanes[states] = found.lanes[found.first[states] + ways]
     parted[states] |= broken.ravel()[np.arange(0, broken.size, width) + ways]
     return lanes, parted
-
-
-def _paths_one_by_one(
-    found: LaneCandidates, places: Floats, begins: NDArray[bool_], graph: LaneletGraph
-) -> tuple[NDArray[intp], NDArray[bool_]]:
-    """``likeliest_paths`` for few runs, in plain numbers: arrays are not worth it for these."""
-    starts = begins.nonzero()[0].tolist()
-    to = _transitions(found, places, (~begins).nonzero()[0], graph)
-    steps = iter(zip(to.off.tolist(), to.changes.tolist(), to.own.tolist(), strict=True))
-    first_costs = iter(_padded(found, np.array(starts), found.costs).tolist())
-    first, counts = found.first.tolist(), found.counts.tolist()
-    lanes, parted = np.empty(len(begins), dtype=intp), begins.copy()
-    for start, end in zip(starts, [*starts[1:], len(begins)], strict=True):
-        reached = next(first_costs)
-        back: list[list[tuple[int, bool]]] = []
-        for _ in range(start + 1, end):
-            ways, costs = _cheapest(reached, *next(steps))
-            back.append(ways)
-            reached = costs
-        own = first[end - 1]
-        names = [found.names[found.lanes[own + k]] for k in range(counts[end - 1])]
-        # Equal costs are decided by name
-        _, _, chosen = min(zip(reached[: len(names)], names, range(len(names)), strict=True))
-        for state in range(end - 1, start - 1, -1):
-            lanes[state] = found.lanes[first[state] + chosen]
-            if state > start:
-                chosen, parted[state] = back[state - start - 1][chosen]
-    return lanes, parted
-
-
-def _cheapest(
-    before: list[float], off: list[list[float]], changes: list[list[float]], own: list[float]
-) -> tuple[list[tuple[int, bool]], list[float]]:
-    """For each candidate the one before and whether a stretch breaks there; and the costs."""
-    ways, costs = [], []
-    for place, more in enumerate(own):
-        away, change = off[place], changes[place]
-        least, way = inf, (0, False)
-        for number, cost in enumerate(before):
-            through, broken = cost + away[number] + change[number], cost + BREAK_COST
-            cheaper = broken if broken < through else through
-            if cheaper < least or not number:
-                least, way = cheaper, (number, through > broken)
-        ways.append(way)
-        costs.append(least + more)
-    return ways, costs
 
 
 def _ends(
@@ -307,7 +253,7 @@ def _transitions(
     to, since = found.first[states][row] + end, found.first[states - 1][row] + start
     count = len(found.names)
     codes = found.lanes[since] * count + found.lanes[to]
-    different = distinct(codes)
+    different = np.unique(codes)
     starts, ends = (numbers.tolist() for numbers in np.divmod(different, count))
     ways_of = {start: graph.ways(found.names[start]) for start in set(starts)}
     pairs_of = zip(starts, ends, strict=True)

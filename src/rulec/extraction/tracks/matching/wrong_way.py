@@ -22,7 +22,6 @@ from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_beside, lanelet_area
-from rulec.trace.plain_arrays import are_new
 
 LEAST_S, LEAST_M = 1.0, 10.0
 """Driving against the traffic lasts at least this long (s) and leads at least this far (m)."""
@@ -89,7 +88,7 @@ def _states_against(
         motions = np.arctan2(tracks.vy[rows, columns], tracks.vx[rows, columns])
         against = np.zeros(len(states), dtype=bool)
         order = numbers.argsort(kind="stable")
-        begins = are_new(numbers[order]).nonzero()[0]
+        begins = np.unique(numbers[order], return_index=True)[1]
         for own in np.split(order, begins[1:]) if len(order) else ():
             at = states[own]
             lanelet = lanes[int(numbers[own[0]])]

@@ -21,7 +21,6 @@ from rulec.trace.partly_known.partly_known_values import (
     Number,
     Truth,
 )
-from rulec.trace.plain_arrays import places_among
 from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Declaration, Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
@@ -221,8 +220,9 @@ def alike_places(columns: Iterable[NDArray[Any]], n_places: int) -> NDArray[np.i
     """Numbers from 0 for positions; two are equal where all columns have the same values there."""
     group_of = np.zeros(n_places, dtype=np.intp)
     for column in columns:
-        codes = places_among(column)
-        group_of = places_among(group_of * (int(codes.max(initial=0)) + 1) + codes)
+        codes = np.unique(column, return_inverse=True)[1]
+        codes += group_of * (int(codes.max(initial=0)) + 1)
+        group_of = np.unique(codes, return_inverse=True)[1]
     return group_of
 
 

@@ -13,7 +13,6 @@ from rulec.monitoring.batch.joined.joined_traces import JoinedPiece
 from rulec.monitoring.batch.joined.object_pairs import ObjectPairs
 from rulec.monitoring.batch.joined.piece_columns import PieceColumns
 from rulec.monitoring.batch.joined.trace_places import TracePlaces
-from rulec.trace.plain_arrays import distinct
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration
 
@@ -90,8 +89,8 @@ def _pairs(
             if declaration.default is None:
                 first, second = (places.of_type(x).nonzero()[0] for x in declaration.parameters)
                 pairs.append(places.pairs_present(first, second))
-            numbers += [distinct(first * n_objects + second) for first, second in pairs]
-    every = distinct(np.concatenate(numbers))
+            numbers += [np.unique(first * n_objects + second) for first, second in pairs]
+    every = np.unique(np.concatenate(numbers))
     return places.pairs_of(np.stack([every // (n_objects or 1), every % (n_objects or 1)], axis=1))
 
 

@@ -1,14 +1,12 @@
-"""Traces given as columns, as rows of tables, or as lines written alike, laid end to end."""
+"""Traces given as columns, or as rows of tables, laid end to end."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
 from rulec.array_types import Indices
-from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.columns.column_states import trace_at
 from rulec.monitoring.batch.columns.encoded_columns import (
     PartlyKnown,
@@ -20,7 +18,6 @@ from rulec.monitoring.batch.joined.given_values import GivenValues, piece_of
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind, with_all_values
 from rulec.monitoring.batch.joined.trace_places import TracePlaces
 from rulec.trace import Trace
-from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
 from rulec.trace.formats.table_blocks import NOBODY, Block, BlockPresence, Coded, Column
 from rulec.trace.plain_arrays import ranges
 from rulec.trace.trace_columns import Array, TraceColumns
@@ -90,38 +87,6 @@ def check_arrays(columns: TraceColumns, vocabulary: Vocabulary) -> None:
                 )
 
 
-def joined_lines(block: LineBlock, lines: AlikeLines, vocabulary: Vocabulary) -> JoinedTraces:
-    """The traces of some lines of a block, in their order.
-
-    Raises UnencodableError as ``piece_of``.
-    """
-    headings, lengths = lines.headings, lines.lengths.astype(np.intp)
-    n_traces, of_each = len(headings), len(headings[0].objects)
-    spans = np.zeros((n_traces * of_each, 2), dtype=np.intp)
-    spans[:, 1] = (lengths - 1).repeat(of_each)
-    types = [kind for heading in headings for kind in heading.objects.values()]
-    places = TracePlaces(lengths, [of_each] * n_traces, spans, types, vocabulary)
-    states, traces = np.arange(places.n_states), np.arange(n_traces).repeat(lengths)
-    given: dict[str, list[GivenValues]] = {}
-    for (name, items), column in lines.columns.items():
-        about = tuple(of_each * traces + item for item in items)
-        own = GivenValues(states, about, _encoded(column, slice(None), name, vocabulary))
-        given.setdefault(name, []).append(own)
-    return JoinedTraces(
-        kind=TraceKind(headings[0].step_s, headings[0].ends, None),
-        lengths=lengths,
-        n_objects=[of_each] * n_traces,
-        spans=spans,
-        types=types,
-        names=[item for heading in headings for item in heading.objects],
-        pieces=(piece_of(given, places),),
-        id_of=lambda number: headings[number].id,
-        says=lambda _, name: name in lines.names,
-        trace=_traces(block, lines.lines, vocabulary),
-        derived=True,
-    )
-
-
 def joined_rows(
     block: Block, presence: BlockPresence, traces: Indices, vocabulary: Vocabulary
 ) -> JoinedTraces:
@@ -164,6 +129,11 @@ def joined_rows(
         start, stop = starts[traces[number]], starts[traces[number] + 1]
         return name in table and bool(block.columns[name].given_at(slice(start, stop)).any())
 
+    def trace(number: int) -> Trace:
+        item = block[int(traces[number])]
+        assert isinstance(item, Trace), "it has been read"
+        return with_all_values(item, vocabulary)
+
     return JoinedTraces(
         kind=TraceKind(float(presence.step_s[traces[0]]), presence.ends[traces[0]], None),
         lengths=lengths,
@@ -174,7 +144,7 @@ def joined_rows(
         pieces=(piece_of(given, places),),
         id_of=lambda number: presence.names[traces[number]],
         says=says,
-        trace=_traces(block, traces, vocabulary),
+        trace=trace,
         derived=True,
     )
 
@@ -188,20 +158,7 @@ def _given(items: Indices, firsts: Indices) -> Indices | None:
     return items + firsts
 
 
-def _traces(
-    block: Sequence[Trace | RulecError], places: Indices, vocabulary: Vocabulary
-) -> Callable[[int], Trace]:
-    def trace(number: int) -> Trace:
-        item = block[int(places[number])]
-        assert isinstance(item, Trace), "it has been read"
-        return with_all_values(item, vocabulary)
-
-    return trace
-
-
-def _encoded(
-    column: Column, rows: Indices | slice, name: str, vocabulary: Vocabulary
-) -> PartlyKnown:
+def _encoded(column: Column, rows: Indices, name: str, vocabulary: Vocabulary) -> PartlyKnown:
     """The given values in some rows, encoded. Raises UnencodableError."""
     declaration = vocabulary.declarations.get(name)
     if declaration is None:
@@ -209,7 +166,7 @@ def _encoded(
     return PartlyKnown(_values(column, rows, declaration), None, None)
 
 
-def _values(column: Column, rows: Indices | slice, declaration: Declaration) -> Array:
+def _values(column: Column, rows: Indices, declaration: Declaration) -> Array:
     if isinstance(column, Coded):
         codes = column.codes[rows]
         used = np.bincount(codes, minlength=len(column.values)) > 0

@@ -17,7 +17,6 @@ from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions.completions import can_be
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
-from rulec.trace.plain_arrays import distinct
 from rulec.vocabulary.partial_values import PartialValue
 
 
@@ -72,8 +71,8 @@ def contradicted(linked_facts: Sequence[LinkedFacts], reader: StackReader) -> se
     ]
     if not places:
         return set()
-    states = distinct(np.concatenate(places))
-    rows: list[int] = distinct(reader.stack.begins.searchsorted(states, side="right") - 1).tolist()
+    states = np.unique(np.concatenate(places))
+    rows: list[int] = np.unique(reader.stack.begins.searchsorted(states, side="right") - 1).tolist()
     return set(rows)
 
 

@@ -23,7 +23,6 @@ from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in, e
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.trace import Value
-from rulec.trace.plain_arrays import places_among
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, PartialValue
 
 MOST_KINDS = 1 << 7
@@ -207,7 +206,7 @@ def _codes(column: StackColumn | None, where: Indices) -> list[Indices]:
     if column is None:
         return []
     ends = [column.values] if column.upper is None else [column.values, column.upper]
-    codes = [places_among(end[where]) + 1 for end in ends]
+    codes = [np.unique(end[where], return_inverse=True)[1] + 1 for end in ends]
     if column.unknown is not None:
         codes = [np.where(column.unknown[where], 0, own) for own in codes]
     return codes

@@ -20,7 +20,7 @@ from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
-from rulec.trace.plain_arrays import distinct, ranges
+from rulec.trace.plain_arrays import ranges
 
 FEW = 1 << 12
 """With at most so many cells, letters are computed in all of them."""
@@ -292,8 +292,8 @@ def _pairs(
         numbers = numbers_at(rule, reader, Spots(stack.state_of[left], cells), rule.variables)
         busy = np.broadcast_to(_are_busy(rule, rule.letters.letters_of(numbers)), len(left))
         pairs = stack.object_of[left[busy]] * n_objects + stack.object_of[right[busy]]
-        pairs_met.append(distinct(pairs))
-    every = distinct(np.concatenate(pairs_met))
+        pairs_met.append(np.unique(pairs))
+    every = np.unique(np.concatenate(pairs_met))
     return every // n_objects, every % n_objects
 
 
@@ -304,7 +304,7 @@ def _cells_met(first: Indices, second: Indices, stack: Stack) -> Iterator[tuple[
     begins = theirs.searchsorted(states, side="left")
     counts = theirs.searchsorted(states, side="right") - begins
     parts = counts.cumsum() // _MOST_TOGETHER
-    for part in distinct(parts):
+    for part in np.unique(parts):
         own = (parts == part).nonzero()[0]
         repeats = counts[own]
         places, _ = ranges(begins[own], repeats)

@@ -23,7 +23,6 @@ from rulec.monitoring.batch.joined.trace_places import TracePlaces
 from rulec.monitoring.implied_values import words_meant
 from rulec.trace.partly_known.column_values import partly_known
 from rulec.trace.partly_known.partly_known_values import NameValues
-from rulec.trace.plain_arrays import distinct
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -112,7 +111,7 @@ class Stack(TracePlaces):
     def traces_at(self, name: str, places: Indices) -> list[int]:
         """The traces of a name's values at some places."""
         places = self.states_at(name, places)
-        traces: list[int] = distinct(self.begins.searchsorted(places, side="right") - 1).tolist()
+        traces: list[int] = np.unique(self.begins.searchsorted(places, side="right") - 1).tolist()
         return traces
 
     def states_at(self, name: str, places: Indices) -> Indices:

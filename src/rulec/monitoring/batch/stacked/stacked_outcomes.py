@@ -28,7 +28,7 @@ from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.uncertain_machine import Answer
 from rulec.trace import Value
-from rulec.trace.plain_arrays import ODD, distinct, ranges
+from rulec.trace.plain_arrays import ODD, ranges
 from rulec.vocabulary.partial_values import UNKNOWN
 
 
@@ -121,7 +121,7 @@ def _answers(
     if len(bounds) <= FEW_WORDS:
         return [rule.answer_to(letters[begin:end]) for begin, end in pairwise(bounds.tolist())]
     first_alike = _first_alike(letters, bounds)
-    different = distinct(first_alike).tolist()
+    different = np.unique(first_alike).tolist()
     answers = dict(
         zip(different, rule.answers(*stretches(letters, bounds), different), strict=True)
     )

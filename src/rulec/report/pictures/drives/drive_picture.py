@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import shapely
 
 from rulec.recordings.recording import Points
 from rulec.report.pictures.drawing import canvas
@@ -21,7 +22,6 @@ from rulec.report.pictures.drawing.canvas import (
     Placing,
     Point,
     Polyline,
-    Rectangle,
 )
 from rulec.report.pictures.drives.drive_scene import Body, DriveScene, SceneViolation
 
@@ -108,15 +108,18 @@ class _View:
         return inside and top + margin <= point[1] <= bottom - margin
 
     def area(self, ring: Points, style: str, tip: str = "") -> Iterator[Area]:
-        """The visible part of a ring."""
-        corners = clipped_ring(self.at(ring), self.box)
-        if len(corners) > 2:
-            yield Area((corners,), style, tip)
+        """The visible parts of a ring."""
+        area = shapely.Polygon(self.at(ring))
+        for part in shapely.get_parts(shapely.clip_by_rect(area, *self.box)):
+            if part.geom_type == "Polygon" and not part.is_empty:
+                yield Area((tuple(part.exterior.coords[:-1]),), style, tip)
 
     def lines(self, line: Points, style: str, tip: str = "") -> Iterator[Polyline]:
         """The visible parts of a line."""
-        for part in clipped_lines(self.at(line), self.box):
-            yield Polyline(part, style, tip)
+        path = shapely.LineString(self.at(line))
+        for part in shapely.get_parts(shapely.clip_by_rect(path, *self.box)):
+            if part.geom_type == "LineString":
+                yield Polyline(tuple(part.coords), style, tip)
 
 
 def _view(scene: DriveScene, state: int, violation: SceneViolation | None) -> _View:
@@ -296,57 +299,3 @@ def chosen_moment(scene: DriveScene, at_s: float | None) -> tuple[int, SceneViol
         return (ordered[0].state, ordered[0]) if ordered else (scene.states // 2, None)
     state = scene.nearest_state(at_s)
     return state, min(ordered, key=lambda violation: abs(violation.state - state), default=None)
-
-
-def clipped_ring(ring: Sequence[Point], box: Rectangle) -> tuple[Point, ...]:
-    """The part of a ring within a rectangle; empty if there is none."""
-    points = list(ring)
-    for side, limit in enumerate(box):
-        axis, sign = side % 2, 1 if side < 2 else -1
-        kept: list[Point] = []
-        for before, point in pairwise([*points[-1:], *points]):
-            inside = sign * (point[axis] - limit) >= 0
-            if inside != (sign * (before[axis] - limit) >= 0):
-                part = (limit - before[axis]) / (point[axis] - before[axis])
-                kept.append(_between(before, point, part))
-            if inside:
-                kept.append(point)
-        points = kept
-    return tuple(points)
-
-
-def clipped_lines(line: Sequence[Point], box: Rectangle) -> Iterator[tuple[Point, ...]]:
-    """The parts of a line within a rectangle."""
-    run: list[Point] = []
-    for before, point in pairwise(line):
-        low, high = _inside(before, point, box)
-        if low >= high:
-            continue
-        start = _between(before, point, low)
-        if run and run[-1] != start:
-            yield tuple(run)
-            run = []
-        run = [*(run or [start]), _between(before, point, high)]
-    if run:
-        yield tuple(run)
-
-
-def _inside(start: Point, end: Point, box: Rectangle) -> tuple[float, float]:
-    """The part of a segment inside the box, as fractions from and to; nothing if from >= to."""
-    low, high = 0.0, 1.0
-    for side, limit in enumerate(box):
-        axis, sign = side % 2, 1 if side < 2 else -1
-        depth, change = sign * (start[axis] - limit), sign * (end[axis] - start[axis])
-        if change == 0:
-            high = high if depth >= 0 else -1.0
-        elif change > 0:
-            low = max(low, -depth / change)
-        else:
-            high = min(high, -depth / change)
-    return low, high
-
-
-def _between(start: Point, end: Point, part: float) -> Point:
-    if part in (0, 1):
-        return end if part else start
-    return start[0] + part * (end[0] - start[0]), start[1] + part * (end[1] - start[1])

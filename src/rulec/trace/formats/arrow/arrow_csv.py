@@ -7,15 +7,17 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 import pyarrow
+from numpy.typing import NDArray
 from pyarrow import csv, types
 
 from rulec.trace.formats.arrow.arrow_arrays import ends_in, lengths_in
 from rulec.trace.formats.arrow.arrow_blocks import Piece, WholeTraces, start_of_last
-from rulec.trace.formats.byte_columns import Bytes
 from rulec.trace.formats.table_reader import LONGEST_ROW, OWN, TRACE, Row
 
 if TYPE_CHECKING:
     from io import BufferedReader
+
+Bytes = NDArray[np.uint8]
 
 _BLOCK_BYTES = 1 << 22
 _NEAR_BYTES = 1 << 17

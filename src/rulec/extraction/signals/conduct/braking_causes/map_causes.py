@@ -29,7 +29,7 @@ from rulec.extraction.signals.measured_numbers import own_front
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import GIVE_WAY_SIGNS
 from rulec.scenario.recorded.reference_line import turn
-from rulec.trace.plain_arrays import distinct, zero_if_nan
+from rulec.trace.plain_arrays import zero_if_nan
 
 _BEND_RAD, _EVERY_M = np.radians(20.0), 10.0
 _SLOWER_KMH = 1.0
@@ -180,7 +180,7 @@ def road_reasons(
     bends &= context.ego_moves[states]
     there = road.lanes.existing_at(place)[:, np.arange(len(states)), lanes]
     codes = road.piece(place) * width + lanes
-    different = distinct(codes)
+    different = np.unique(codes)
     told = [road.limit_mps(code // width, code % width, turned) for code in different.tolist()]
     known = np.array([np.inf if limit is None else limit for limit in told])
     untold = np.array(

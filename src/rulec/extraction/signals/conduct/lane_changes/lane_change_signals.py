@@ -29,7 +29,6 @@ from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.cells import Cells
 from rulec.trace.partly_known.partly_known_values import Truth
-from rulec.trace.plain_arrays import begin_runs, distinct
 
 _BACK_S = 0.5
 """Who is back sooner than this (s) may not have changed lanes."""
@@ -100,7 +99,7 @@ def _astride(context: DriveContext) -> Flags:
     over = (lane != steady).nonzero()[0]
     if not len(over):
         return found
-    firsts = (begin_runs(over) | spans.begins_here[over]).nonzero()[0]
+    firsts = ((np.diff(over, prepend=-2) > 1) | spans.begins_here[over]).nonzero()[0]
     beyond = np.abs(context.ego_extents.left_of[0, over, np.maximum(lane, steady)[over]])
     error = context.tolerances.place_m + np.abs(context.map_offset_m)
     surely = beyond > np.broadcast_to(error, found.shape)[over]
@@ -155,7 +154,7 @@ def _has_followed(context: DriveContext, lane: int, begin_m: float, end: int) ->
     states = own.start + (context.ego_extents.s[0, own] >= begin_m).nonzero()[0]
     points = shapely.points(context.ego.x[0, states], context.ego.y[0, states])
     pieces = road.piece(context.ego_extents.s[0, states])
-    for piece in distinct(pieces).tolist():
+    for piece in np.unique(pieces).tolist():
         lanelet = road.rows[piece][lane]
         inside = lanelet is not None and shapely.covers(
             lanelet_area(lanelet), points[pieces == piece]

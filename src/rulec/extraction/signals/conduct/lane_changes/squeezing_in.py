@@ -19,7 +19,7 @@ from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
 from rulec.trace.partly_known.partly_known_values import Truth
-from rulec.trace.plain_arrays import distinct, ranges
+from rulec.trace.plain_arrays import ranges
 
 _NO_ROOM_S, _DRAWS_AWAY_MPS = 0.3, 1.0
 """A vehicle this close (s) behind ego has no room to react, unless ego draws away from it."""
@@ -220,7 +220,7 @@ def _drifts(
     before = np.maximum(states - steps, context.spans.first[states])
     went_s = (states - before) * context.recording.step_s
     drifts, whole = np.zeros(whom.shape, dtype=bool), context.relevant.shape
-    for lane in distinct(lanes).tolist():
+    for lane in np.unique(lanes).tolist():
         rows, ways = (whom & (lanes == lane)).nonzero()
         (now,), (then,) = (
             context.extents.cells_from_bounds(Cells.in_shape(whole, rows, at[ways]), lane)
