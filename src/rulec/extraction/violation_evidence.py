@@ -16,7 +16,7 @@ from rulec.logic.formula import Comparison, Count, atoms_of
 from rulec.logic.free_names import names_in
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.explain.margins import Margin
-from rulec.monitoring.implied_values import names_behind, words_meant
+from rulec.monitoring.told_names import names_behind, words_meant
 from rulec.monitoring.verdict import Violation
 from rulec.trace import Trace, Value
 

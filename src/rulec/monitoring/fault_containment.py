@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.fault_messages import NOT_FAULTS, fault_of, is_fault
 from rulec.logic.free_names import names_of
-from rulec.monitoring.implied_values import names_behind
+from rulec.monitoring.told_names import names_behind
 from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Verdict
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_frame

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from operator import is_
@@ -15,6 +15,7 @@ from rulec.logic.fold import fold
 from rulec.logic.kleene import ObjectBinding, Unknown, evaluator_of
 from rulec.monitoring.constant_values import values_in, with_constants
 from rulec.monitoring.state_view import StateView, put, value_in
+from rulec.monitoring.told_names import untold_names, with_untold, words_meant
 from rulec.trace import State, Trace, TraceGraph
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.partly_known.temporal_operators import BitInstants
@@ -92,51 +93,12 @@ def _mentions(value: Any, items: tuple[str, ...]) -> bool:
     return value is not None
 
 
-def words_meant(vocabulary: Vocabulary, told: frozenset[str] | None) -> tuple[str, ...]:
-    """The words that their meanings give in traces of a source, in their order.
-
-    A source that names what it tells leaves out their names, but not the names that they are made
-    of; any other tells all words that have a default.
-    """
-    if not vocabulary.meanings:
-        return ()
-    if told is None:
-        declared = vocabulary.declarations
-        return tuple([name for name in vocabulary.meanings if declared[name].default is None])
-    known, meant = {*told}, []
-    for name, meaning in vocabulary.meanings.items():
-        if name not in told and known >= meaning.reads:
-            known.add(name)
-            meant.append(name)
-    return tuple(meant)
-
-
-def names_behind(names: Sequence[str] | frozenset[str], vocabulary: Vocabulary) -> frozenset[str]:
-    """The names, and those that their meanings are made of."""
-    found = {*names}
-    for name in reversed([*vocabulary.meanings]):
-        if name in found:
-            found |= vocabulary.meanings[name].reads
-    return frozenset(found)
-
-
-def without_calculations(
-    names: Sequence[str], vocabulary: Vocabulary, untold: Set[str]
-) -> tuple[str, ...]:
-    """The names, with the untold quantities of comparisons that are calculated instead of these."""
-    found: dict[str, None] = {}
-    for name in names:
-        meaning = vocabulary.meanings.get(name)
-        if meaning is None or not isinstance(meaning.formula, ltl.Calculated):
-            found[name] = None
-        else:
-            found |= dict.fromkeys(sorted(meaning.reads & untold))
-    return tuple(found)
-
-
 def with_defined_words(trace: Trace, vocabulary: Vocabulary) -> Trace:
     """The trace of valid states, in which nothing is left to the meanings of words."""
-    for name in words_meant(vocabulary, trace.told):
+    meant = words_meant(vocabulary, trace.told)
+    if meant:
+        vocabulary = with_untold(vocabulary, untold_names(vocabulary, trace.told))
+    for name in meant:
         meaning = vocabulary.meanings[name]
         types = vocabulary.declarations[name].parameters
         states = list(trace.states)

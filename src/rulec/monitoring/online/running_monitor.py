@@ -13,7 +13,7 @@ from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.diagnostics.fault_messages import contained
-from rulec.monitoring.implied_values import with_words_in_state, words_meant
+from rulec.monitoring.implied_values import with_words_in_state
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.four_valued import without_sink, worst_of
 from rulec.monitoring.online.monitor_state import (
@@ -36,6 +36,7 @@ from rulec.monitoring.online.running_constants import (
 from rulec.monitoring.online.snapshot import from_data, restored, to_data, with_source
 from rulec.monitoring.online.transition_cache import TransitionCache
 from rulec.monitoring.state_validation import check_objects, check_told
+from rulec.monitoring.told_names import words_meant
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.verdict import CarriedState, RuleFor, Violation
 from rulec.trace import State

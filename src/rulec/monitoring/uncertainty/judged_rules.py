@@ -8,9 +8,13 @@ from dataclasses import dataclass, replace
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import OutcomeMachine, of_running_words
 from rulec.logic.free_names import names_of
-from rulec.monitoring.implied_values import without_calculations
+from rulec.monitoring.told_names import (
+    names_lacking,
+    untold_names,
+    untold_types,
+    with_untold,
+)
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
-from rulec.monitoring.uncertainty.untold_names import untold_names, untold_types, with_untold
 from rulec.monitoring.verdict import RuleNotJudged
 from rulec.vocabulary import Vocabulary
 
@@ -74,7 +78,7 @@ def _judged_rules(
 
     def untold_by(rule: CompiledRule, machine: OutcomeMachine | None) -> RuleNotJudged | None:
         lacking = uncertain_machine(rule, machine).untold(unknown)
-        lacking = without_calculations(lacking, rulebook.vocabulary, unknown)
+        lacking = names_lacking(lacking, rulebook.vocabulary, unknown)
         lacking += tuple([own.type for own in rule.variables if own.type in types])
         return RuleNotJudged(rule.name, rule.strength, lacking) if lacking else None
 
