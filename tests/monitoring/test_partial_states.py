@@ -13,7 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.online.four_valued import WORST_FIRST, best_of, worst_of
-from rulec.monitoring.uncertainty import uncertain_machine, required_names
+from rulec.monitoring.uncertainty import required_names, uncertain_machine
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace

@@ -28,6 +28,16 @@ def words_meant(vocabulary: Vocabulary, told: frozenset[str] | None) -> tuple[st
     return tuple(_meant(vocabulary, told))
 
 
+def with_meant(told: frozenset[str] | None, vocabulary: Vocabulary) -> frozenset[str] | None:
+    """What a source tells whose states have been extended by the words that are meant.
+
+    Words of which only one value may be known are left to be found again, and their rules told so.
+    """
+    if told is None:
+        return None
+    return told.union(name for name, own in _meant(vocabulary, told).items() if all(own))
+
+
 class _Known(NamedTuple):
     """Whether something may be known to be true, and whether it may be known to be false."""
 
@@ -85,10 +95,12 @@ def _may_be_known(formula: ltl.Formula, known: Set[str], meant: Mapping[str, _Kn
     )
 
 
-def names_behind(names: Sequence[str] | frozenset[str], vocabulary: Vocabulary) -> frozenset[str]:
-    """The names, and those that their meanings are made of."""
+def names_behind(
+    names: Set[str], vocabulary: Vocabulary, meant: Sequence[str] | None = None
+) -> frozenset[str]:
+    """The names, and those that their meanings are made of; of those ``meant``, if given."""
     found = {*names}
-    for name in reversed([*vocabulary.meanings]):
+    for name in reversed([*(vocabulary.meanings if meant is None else meant)]):
         if name in found:
             found |= vocabulary.meanings[name].reads
     return frozenset(found)
@@ -107,6 +119,11 @@ def names_lacking(
         only = word != name and len(behind) == 1
         found |= dict.fromkeys(sorted(behind) if is_calculated or only else [word])
     return tuple(found)
+
+
+def with_defaulted(told: frozenset[str], vocabulary: Vocabulary) -> frozenset[str]:
+    """What a source tells if all else takes its default, or means what it is defined as."""
+    return told | (vocabulary.declarations.keys() - vocabulary.meanings)
 
 
 def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
