@@ -136,6 +136,11 @@ _SET_BY_BOOKS: Mapping[str, tuple[str, Fraction]] = {
     "speed_to_stop_at_once": ("stops_at_once_kmh", Fraction(18, 5)),
     "least_acceleration": ("accelerating_mps2", Fraction(1)),
     "hard_braking": ("braking_hard_mps2", Fraction(1)),
+    "bearable_braking": ("disturbing_mps2", Fraction(1)),
+    "overtaken_by": ("clearly_faster_kmh", Fraction(18, 5)),
+    "congested_below": ("congested_kmh", Fraction(18, 5)),
+    "walking_below": ("walking_pace_kmh", Fraction(18, 5)),
+    "flow_reach": ("flow_reach_m", Fraction(1)),
 }
 """Parameter of a vocabulary -> the threshold that it sets, and its unit's share of a base unit."""
 

@@ -574,7 +574,7 @@ def test_who_holds_up_others():
     road = [straight(1, 0, 2500, limit_mps=30.0)]
     slow, follower = steady(7, 100, 0, 10, 100), steady(8, 85, 0, 10, 100)
     found = impedes(road, slow, follower)
-    # After ten seconds, of half a second each. Nobody knows whether it has a reason in its last five
+    # After ten seconds, of half a second each. Whether it has a reason in its last five is unknown
     assert found[:21] == "?" * 20 + "T"
     assert found[-11:] == "T" + "?" * 10
     assert found[40] == "T"
