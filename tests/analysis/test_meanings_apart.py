@@ -65,6 +65,16 @@ def relation(first, second, rule="keeps"):
             "define near(c: car) = historically[<= 3 s] gap(c) < 5 m",
             "stricter",
         ),
+        (
+            "define near(c: car) = wet since[>= 2 s] wet and behind(c)",
+            "define near(c: car) = wet since[>= 3 s] wet and behind(c)",
+            "stricter",
+        ),
+        (
+            "define near(c: car) = behind(c) and historically[2 s .. 9 s] wet",
+            "define near(c: car) = behind(c) and historically[3 s .. 9 s] wet",
+            "laxer",
+        ),
         ("define near(c: car) = gap(c) < 5 m", "define near(c: car) = wet", "incomparable"),
     ],
 )
@@ -72,6 +82,50 @@ def test_a_definition_is_ordered_by_its_numbers(first, second, expected):
     assert relation(first, second) == expected
     turned = {"laxer": "stricter", "stricter": "laxer"}
     assert relation(second, first) == turned.get(expected, expected)
+
+
+@pytest.mark.parametrize(
+    ("counted", "expected"),
+    [
+        ("some c: car (gap(c) < {} m)", "laxer"),
+        ("every c: car (gap(c) < {} m)", "laxer"),
+        ("not some c: car (gap(c) < {} m)", "stricter"),
+        ("count c: car (gap(c) < {} m) > 2", "laxer"),
+        ("count c: car (gap(c) < {} m) <= 2", "stricter"),
+        ("count c: car (gap(c) < {} m) = 2", "incomparable"),
+    ],
+)
+def test_a_definition_is_ordered_by_the_numbers_in_what_it_counts(counted, expected):
+    """Who is nearer than three metres is nearer than five."""
+    first, second = (f"define slow = {counted.format(metres)}" for metres in (3, 5))
+    assert relation(first, second, "flows") == expected
+
+
+ROAD = """rulebook {}
+use road
+set {}
+hard rule flows {{ require never impedes_traffic }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("far_below_limit = 0.4", "far_below_limit = 0.5"),
+        ("slow_for = 20 s", "slow_for = 10 s"),
+        ("falling_behind = 1 m/s", "falling_behind = 2 m/s"),
+        ("allowed_anywhere = 20 km/h", "allowed_anywhere = 30 km/h"),
+        ("least_acceleration = 0.2 m/s^2", "least_acceleration = 0.5 m/s^2"),
+    ],
+)
+def test_books_that_set_a_parameter_of_impedes_traffic_are_ordered(first, second):
+    """A law that calls less traffic impeded forbids less."""
+    books = [
+        parse_rulebook(ROAD.format(name, own))
+        for name, own in zip("ab", (first, second), strict=True)
+    ]
+    assert [pair.relation for pair in diff_rulebooks(*books).pairs] == ["laxer"]
+    assert [pair.relation for pair in diff_rulebooks(*books[::-1]).pairs] == ["stricter"]
 
 
 def test_the_names_of_variables_say_nothing():

@@ -18,6 +18,7 @@ from rulec.trace.vocabulary_projection import RECORDED_UNITS, UNTOLD_VALUES
 from rulec.vocabulary import Quantity
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import recording, straight, vehicle
+from support.defined_words import LEFT_TO_DEFINITIONS
 from support.signal_arrays import bounded
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -55,7 +56,8 @@ def test_every_word():
     lane = straight(1, 0, 99, signs=lane.signs, types=frozenset({"highway"}), **limits)
     found = recording([lane], [vehicle(1, {0: (9, 0), 1: (19, 0)})])
     (drive,) = Drives(found, "right").of("1")
-    assert drive.words | NOT_IN_THAT == documented
+    assert drive.words | NOT_IN_THAT | LEFT_TO_DEFINITIONS == documented
+    assert LEFT_TO_DEFINITIONS.isdisjoint(drive.words)
 
 
 def test_every_value_that_no_format_has():

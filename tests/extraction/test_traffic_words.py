@@ -6,6 +6,7 @@ from rulec.extraction.drives import Drives
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.recordings import recording, vehicle
+from support.defined_words import defined
 from support.generators.random_recordings import lanes
 from support.measured import middle
 
@@ -190,11 +191,13 @@ def test_braking_and_gaining_speed():
         places[k] = (x, 0.0)
         a = -6.0 if k < 5 else 2.0
         x, v = x + v * STEP_S + a * STEP_S**2 / 2, v + a * STEP_S
-    told = states([vehicle(7, places)])
-    assert told[3]["braking_hard"] is True
-    assert told[3]["accelerating"] is False
-    assert told[9]["braking_hard"] is False
-    assert told[9]["accelerating"] is True
+    told, found = (
+        states([vehicle(7, places)]),
+        recording(lanes(2), [vehicle(7, places)], step_s=STEP_S),
+    )
+    brakes, gains = defined("braking_hard", found), defined("accelerating", found)
+    assert (brakes[3], gains[3]) == ("T", "F")
+    assert (brakes[9], gains[9]) == ("F", "T")
     # Over states 2 to 4, a second around the third: from 20 - 3·1 to 20 - 3·3 m/s on average
     assert middle(told[3]["speed"]) == pytest.approx((20 - 9) * 3.6)
 

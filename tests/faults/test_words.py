@@ -9,6 +9,8 @@ from rulec.extraction.signals.settling import _IMPLIED
 from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.extraction.traces.to_trace import _SIGNALS
 from rulec.logic.free_names import names_of
+from rulec.monitoring.told_names import names_behind
+from support.defined_words import LEFT_TO_DEFINITIONS
 
 GERMAN = machines("de")
 RECORDING = rulec.read_recording("docs/samples/following.xml")
@@ -50,7 +52,12 @@ def lost_in(verdict):
 def reading(words):
     """The rules that read some words, or others that these imply."""
     words = {*words, *(name for name, own in _IMPLIED.items() if not {*own}.isdisjoint(words))}
-    return {rule.name for rule in GERMAN.rules if not words.isdisjoint(names_of(rule.formula))}
+    defined = [word for word in GERMAN.vocabulary.meanings if word in LEFT_TO_DEFINITIONS]
+    read = {
+        rule.name: names_behind(names_of(rule.formula), GERMAN.vocabulary, defined)
+        for rule in GERMAN.rules
+    }
+    return {rule for rule, names in read.items() if not words.isdisjoint(names)}
 
 
 def check_only_its_rules_are_lost(monkeypatch, words):

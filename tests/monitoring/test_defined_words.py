@@ -5,6 +5,7 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -54,6 +55,43 @@ def numbers(most):
     between = st.tuples(halves, widths).map(lambda x: Interval(x[0], x[0] + x[1]))
     huge = st.sampled_from((1e160, 1e200, 3e200, 1.7e308))
     return st.one_of(halves, halves, halves, between, huge, st.just(UNKNOWN))
+
+
+PARTLY = compile_rulebook(
+    parse_rulebook(
+        """rulebook p
+type car
+quantity gap(c: car) in m default 1000
+signal behind(c: car), hurries default false
+signal close(c: car), clings(c: car), jostles default false
+define close(c: car) = behind(c) and gap(c) < 10 m
+define clings(c: car) = close(c) since[>= 1 s] true
+define jostles = hurries and some c: car (close(c))
+hard rule keeps(c: car) { require always not close(c) }
+hard rule parts(c: car) { require always not clings(c) }
+hard rule calm { require always not jostles }
+hard rule catches_up(c: car) { require always (hurries implies close(c)) }
+"""
+    )
+)
+
+
+@pytest.mark.parametrize(
+    ("behind", "violated", "still_open"),
+    [(False, {"catches_up"}, set()), (True, set(), {"catches_up"})],
+)
+def test_what_is_not_told_matters_where_it_decides(behind, violated, still_open):
+    """Who is not behind is not close, whatever the gap; that somebody is close nobody can know."""
+    told = frozenset({"behind", "hurries", "car"})
+    trace = Trace("t", 1.0, {"o": "car"}, ({"hurries": True, "behind": {"o": behind}},), told=told)
+    verdict = verify(trace, PARTLY)
+    assert verdict == verify_by_states(trace, PARTLY)
+    assert {own.rule for own in verdict.violations} == violated
+    assert {own.rule for own in verdict.open} == still_open
+    lacking = {own.rule: own.untold for own in verdict.not_judged}
+    assert lacking == dict.fromkeys(("keeps", "parts", "calm"), ("gap",))
+    monitor = Monitor(PARTLY, 1.0, told=told, cut=False)
+    assert {*monitor.not_judged} == lacking.keys()
 
 
 TRUTHS = st.sampled_from((True, True, False, UNKNOWN))

@@ -13,7 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.online.four_valued import WORST_FIRST, best_of, worst_of
-from rulec.monitoring.uncertainty import uncertain_machine, untold_names
+from rulec.monitoring.uncertainty import required_names, uncertain_machine
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
@@ -256,7 +256,7 @@ def test_nobody_keeps_hard_rules_that_are_not_judged(strength, best, worst):
 
 def test_whether_a_source_says_too_little_is_not_looked_for_without_end(monkeypatch):
     """A rule of many states whose every letter leads elsewhere is taken to be one to judge."""
-    monkeypatch.setattr(untold_names, "MOST_LOOKED_AT", -1)
+    monkeypatch.setattr(required_names, "MOST_LOOKED_AT", -1)
     judge = monitor(rule("no_p", always(no(P))), told=["q"])
     assert list(judge.so_far.rules) == ["no_p"]
 
@@ -271,8 +271,8 @@ def test_a_duty_of_many_steps_is_found_to_be_one_that_q_alone_violates(monkeypat
         steps.append(about)
         return step(self, about)
 
-    step = untold_names.RequiredNames._step
-    monkeypatch.setattr(untold_names.RequiredNames, "_step", counted)
+    step = required_names.RequiredNames._step
+    monkeypatch.setattr(required_names.RequiredNames, "_step", counted)
     assert judged_rules(compiled, frozenset({"q"}), cut=True).unknowable == ()
     # As many as the duty has steps, once or twice.
     assert 200 <= len(steps) <= 1000
@@ -288,8 +288,8 @@ def test_large_machines_are_asked_in_another_way_with_the_same_answer(whole, cha
     told = frozenset(chance.sample(declared, len(declared) // 2))
     usual = judged_rules(replace(compiled), told, cut=True)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(untold_names, "MOST_COMPARED", 0)
-        patch.setattr(untold_names, "MOST_LOOKED_AT_WHOLE", whole)
+        patch.setattr(required_names, "MOST_COMPARED", 0)
+        patch.setattr(required_names, "MOST_LOOKED_AT_WHOLE", whole)
         patch.setattr(uncertain_machine, "_PREPARED", {})
         found = judged_rules(replace(compiled), told, cut=True)
     assert [rule.name for rule, _ in found.machines] == [rule.name for rule, _ in usual.machines]

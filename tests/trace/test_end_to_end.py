@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.trace.end_to_end import EndToEnd, UnlikeDrivesError
-from rulec.trace.partly_known.partly_known_values import Truth
 
 flags = st.lists(st.booleans(), min_size=1, max_size=7)
 steps = st.integers(0, 4)
@@ -91,18 +90,3 @@ def test_nothing_is_within_less_than_no_steps():
     assert not spans.within(flags, -1).any()
     assert not spans.within_last(flags, -1).any()
     assert spans.within(flags, 0).tolist() == flags.tolist()
-
-
-@given(st.lists(st.text("TF?", min_size=1, max_size=5), min_size=1, max_size=3), steps)
-def test_what_lasts_is_so_whatever_was_unknown_and_before(several, n):
-    spans, _ = laid([[letter == "T" for letter in text] for text in several])
-    letters = np.array(list("".join(several)))
-    found = spans.lasting(Truth(letters == "T", letters != "F"), n)
-    expected = [
-        # As if what was before the drive were unknown states
-        ("?" * n + text)[k : k + n + 1]
-        for text in several
-        for k in range(len(text))
-    ]
-    assert found.sure.tolist() == [set(seen) == {"T"} for seen in expected]
-    assert found.possible.tolist() == ["F" not in seen for seen in expected]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot
+from math import ceil, floor, hypot
 from typing import Any
 
 import numpy as np
@@ -292,22 +292,12 @@ class _Words:
 
     def _own_words(self, boxes: EgoBoxes) -> dict[str, list[Any]]:
         """Words of ego's speed, by cell."""
-        found: dict[str, list[Any]] = {}
+        if "speed" not in self._names:
+            return {}
         slow, fast = (speed * KMH_PER_MPS for speed in boxes.mean_speed)
-        standing = USUAL.standing_kmh
-        if "speed" in self._names:
-            low = np.where(slow < 2 * standing, 0.0, slow)
-            found["speed"] = [
-                Interval(float(np.floor(one * 100) / 100), float(np.ceil(other * 100) / 100))
-                for one, other in zip(low.tolist(), fast.tolist(), strict=True)
-            ]
-        if "can_stop_at_once" in self._names:
-            limit = USUAL.stops_at_once_kmh
-            found["can_stop_at_once"] = [
-                True if other < limit else False if one > limit else UNKNOWN
-                for one, other in zip(slow.tolist(), fast.tolist(), strict=True)
-            ]
-        return found
+        low = np.where(slow < 2 * USUAL.standing_kmh, 0.0, slow)
+        ends = zip(low.tolist(), fast.tolist(), strict=True)
+        return {"speed": [Interval(floor(x * 100) / 100, ceil(y * 100) / 100) for x, y in ends]}
 
     def _relations(
         self, boxes: EgoBoxes, number: int, items: Sequence[str]

@@ -16,7 +16,6 @@ from rulec.array_types import Flags, Floats
 from rulec.cell_words.ego_boxes import EgoBoxes, column
 from rulec.cell_words.relation_words import BEHIND, BESIDE, IN_FRONT, LEFT, RIGHT, Relations
 from rulec.cell_words.road_frame import OthersNow, RoadFrame
-from rulec.extraction.signals.conduct.reason_signals import FOLLOWS_S, reach_at
 from rulec.extraction.signals.map.exit_room import ROOM_M
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
@@ -24,7 +23,6 @@ from rulec.vocabulary.partial_values import UNKNOWN
 
 CONDUCT = frozenset(
     {
-        "impedes_traffic",
         "being_overtaken",
         "overtaking",
         "oncoming_clear",
@@ -54,7 +52,6 @@ class ConductWords:
     def words(self, names: frozenset[str]) -> Mapping[str, list[Any]]:
         """Name -> its values by cell."""
         never = {
-            "impedes_traffic": self._holds_nobody_up,
             "being_overtaken": self._overtaken_by_nobody,
             "overtaking": self._overtakes_nobody,
             "straddling": self._within_a_lane,
@@ -81,38 +78,6 @@ class ConductWords:
         """Mask of others that may reach into ego's lane."""
         found: Flags = self._lanes.astype(int) @ self._others.perhaps.T.astype(int) > 0
         return found
-
-    @cached_property
-    def _shares(self) -> Flags:
-        """Mask of others that surely reach into ego's lane, whichever it is."""
-        found: Flags = self._lanes.astype(int) @ (~self._others.lanes).T.astype(int) == 0
-        return found
-
-    def _holds_nobody_up(self) -> Flags:
-        """Cells where nobody follows near enough, or ego has a reason for any speed."""
-        others, (near, _) = self._others, self._relations.gaps
-        fastest = np.maximum(others.along[1], 0.0)
-        follows = others.may_go_along & (self._relations.stations & IN_FRONT > 0)
-        follows &= self._may_share & (near <= FOLLOWS_S * fastest)
-        return _nobody(follows) | self._has_a_reason()
-
-    def _has_a_reason(self) -> Flags:
-        """Cells with a vehicle surely ahead in ego's lane or a junction near enough to slow it."""
-        others, frame = self._others, self._frame
-        reach = reach_at(np.maximum(self._boxes.mean_speed[0], 0.0))
-        (front, far_front), (_, far_rear) = self._relations.front, self._relations.rear
-        ahead = others.goes_along & others.counts & (self._relations.stations == BEHIND)
-        ahead &= self._shares & (self._relations.gaps[1] <= column(reach))
-        found: Flags = ahead.any(axis=1)
-        always = np.ones(len(reach), dtype=bool)
-        for stretches in frame.reasons:
-            on_this = np.zeros(len(reach), dtype=bool)
-            for start, end in stretches:
-                near = (front[:, 0] >= start + frame.apart_s - reach) & (far_front[:, 0] <= start)
-                inside = (front[:, 0] >= start) & (far_rear[:, 0] <= end - frame.apart_s)
-                on_this |= near | inside
-            always &= on_this
-        return found | always
 
     def _overtaken_by_nobody(self) -> Flags:
         others = self._others

@@ -94,9 +94,8 @@ class RoadFrame:
     of distances, from that and from the error ``place_m`` of places. ``has_rails``: whether it has
     a level crossing. ``one_way``: whether surely nobody comes the other way. ``goes_straight``:
     whether it turns in none of its junctions. ``crossings`` and ``junctions`` are those of any road
-    along its lanes, ``reasons`` has both for each road. On ``other_lanes`` these roads do not all
-    have the same lanes. ``lights`` are those of its lanes; ``leaving`` is the mask of lanes that
-    lead to another road, or come from one.
+    along its lanes. On ``other_lanes`` these roads do not all have the same lanes. ``lights`` are
+    those of its lanes; ``leaving`` is the mask of those to another road, or from one.
 
     Ego extends at most ``half_m`` from its middle to its corners, starts ``ego_d`` m left of the
     line, and reaches some ``lanes``, or all.
@@ -125,7 +124,6 @@ class RoadFrame:
         roads = self._roads.roads
         crossings = [self._roads.in_scene(own, own.crossings) for own in roads]
         junctions = [self._roads.in_scene(own, own.junctions) for own in roads]
-        self.reasons = [[*own, *more] for own, more in zip(crossings, junctions, strict=True)]
         self.crossings, self.junctions = (
             list(dict.fromkeys(chain(*own))) for own in (crossings, junctions)
         )

@@ -12,9 +12,9 @@ from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
-from rulec.monitoring.implied_values import names_behind
 from rulec.monitoring.moments.formula_moments import Moment, moments
 from rulec.monitoring.state_validation import check_objects, check_states, check_told
+from rulec.monitoring.told_names import names_behind
 from rulec.recordings.recording import Recording
 from rulec.rulebook.query_model import FormulaQuery
 from rulec.trace import Trace

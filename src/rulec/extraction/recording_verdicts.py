@@ -18,8 +18,8 @@ from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.verify_arrays import answer_to, judge_contained
 from rulec.monitoring.fault_containment import without
-from rulec.monitoring.implied_values import names_behind, words_meant
 from rulec.monitoring.rulebook_edition import edition_of
+from rulec.monitoring.told_names import names_behind, words_meant
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
 from rulec.monitoring.verdict import (
     NotJudged,

@@ -14,7 +14,7 @@ from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_p
 from rulec.extraction.traces.recorded_drive import Drive, DrivePlaces, NoDrive
 from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.extraction.traffic_thresholds import USUAL, Thresholds
+from rulec.extraction.traffic_thresholds import USUAL, Thresholds, check_chosen
 from rulec.recordings.doubts.crowds import refuse_crowd
 from rulec.recordings.mending.mended_recording import mended
 from rulec.recordings.recording import Recording, Side
@@ -49,6 +49,7 @@ class RequestedDrives:
         # A single ego is allowed, and so are ids that are numbers in the file
         given: object = expected("egos", "str | int | Iterable[str | int]", self.egos)
         expected("thresholds", "Thresholds", self.thresholds)
+        check_chosen(self.thresholds)
         expected("assumed", "Mapping", self.assumed)
         egos = (given,) if isinstance(given, str) or not isinstance(given, Iterable) else self.egos
         object.__setattr__(self, "egos", tuple(map(str, egos)))

@@ -134,8 +134,25 @@ _SET_BY_BOOKS: Mapping[str, tuple[str, Fraction]] = {
     "cycle_braking": ("cycle_braking_mps2", Fraction(1)),
     "rail_braking": ("rail_braking_mps2", Fraction(1)),
     "speed_to_stop_at_once": ("stops_at_once_kmh", Fraction(18, 5)),
+    "least_acceleration": ("accelerating_mps2", Fraction(1)),
+    "hard_braking": ("braking_hard_mps2", Fraction(1)),
+    "bearable_braking": ("disturbing_mps2", Fraction(1)),
+    "overtaken_by": ("clearly_faster_kmh", Fraction(18, 5)),
+    "congested_below": ("congested_kmh", Fraction(18, 5)),
+    "walking_below": ("walking_pace_kmh", Fraction(18, 5)),
+    "flow_reach": ("flow_reach_m", Fraction(1)),
 }
 """Parameter of a vocabulary -> the threshold that it sets, and its unit's share of a base unit."""
+
+_OF_DEFINITIONS = frozenset(("stops_at_once_kmh", "accelerating_mps2", "braking_hard_mps2"))
+"""The thresholds that only rulebooks set: recordings leave their words to the definitions."""
+
+
+def check_chosen(given: Thresholds) -> None:
+    """Raise ValueError, with a message for users, for a threshold that only rulebooks set."""
+    for parameter, (name, _) in _SET_BY_BOOKS.items():
+        if name in _OF_DEFINITIONS and getattr(given, name) != getattr(USUAL, name):
+            raise ValueError(f"`{name}` is a rulebook's: `set {parameter} = …` there")
 
 
 def thresholds_by(vocabulary: Vocabulary | None, given: Thresholds) -> Thresholds:
@@ -152,25 +169,9 @@ def thresholds_by(vocabulary: Vocabulary | None, given: Thresholds) -> Threshold
 LEAST_S: Mapping[str, float] = MappingProxyType(
     dict.fromkeys(
         (
-            "lateral",
-            "position",
-            "precedes",
-            "one_between",
-            "safe_gap",
-            "stopped",
-            "oncoming",
-            "straddling",
-            "lane_position",
-            "on_solid_line",
-            "broken_on_own_side",
-            "single_line",
-            "accelerating",
-            "braking_hard",
-            "can_stop_at_once",
-            "dense_all_lanes",
-            "far_lane_queue",
-            "own_lane_queue",
-            "overtaking",
+            *("lateral", "position", "precedes", "one_between", "safe_gap", "stopped", "oncoming"),
+            *("straddling", "lane_position", "on_solid_line", "broken_on_own_side", "single_line"),
+            *("dense_all_lanes", "far_lane_queue", "own_lane_queue", "overtaking"),
             "being_overtaken",
         ),
         0.3,
@@ -207,7 +208,9 @@ def threshold_options(texts: Iterable[str]) -> Thresholds:
         if isinstance(known[name], int) and number != int(number):
             raise ValueError(f"`{name}` is a whole number, not `{value}`")
         numbers[name] = int(number) if isinstance(known[name], int) else number
-    return replace(Thresholds(), **numbers)  # type: ignore[arg-type]
+    chosen = replace(Thresholds(), **numbers)  # type: ignore[arg-type]
+    check_chosen(chosen)
+    return chosen
 
 
 def pair_of(text: str, example: str) -> tuple[str, str]:

@@ -16,8 +16,9 @@ from rulec.logic.formula import Comparison, Count, atoms_of
 from rulec.logic.free_names import names_in
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.explain.margins import Margin
-from rulec.monitoring.implied_values import names_behind, words_meant
+from rulec.monitoring.told_names import names_behind, words_meant
 from rulec.monitoring.verdict import Violation
+from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Trace, Value
 
 
@@ -64,14 +65,15 @@ def evidence_of(
         violation, trace_for(violation, drive, rules), rules, drive.decided_by, repaired=False
     )
     read = dict.fromkeys(names_in(explained.rule.formula))
-    if meant := words_meant(rules.vocabulary, drive.arrays.told):
-        behind = names_behind(frozenset(read), rules.vocabulary)
-        read = dict.fromkeys([name for name in (*read, *sorted(behind)) if name not in meant])
+    meant = words_meant(rules.vocabulary, drive.arrays.told)
+    behind = sorted(names_behind(read.keys(), rules.vocabulary, meant))
+    read = dict.fromkeys([name for name in (*read, *behind) if name not in meant])
     told = [name for name in read if name in drive.kinds and name not in assumed]
     partial = {name for name in told if _is_partial(drive, name)}
     declared = rules.vocabulary.declarations
     untold = [name for name in read if name not in drive.kinds]
-    by_default = [name for name in untold if drive.arrays.told is None or declared[name].presumed]
+    source = drive.arrays.told or ()
+    by_default = [name for name in untold if name in source or declared[name].presumed]
     first, last = explained.lasts
     unknown = [name for name in untold if name not in by_default]
     return ViolationEvidence(
@@ -129,9 +131,11 @@ def trace_for(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Tr
     terms += [term for comparison in comparisons for _, term in comparison.terms]
     names = {name for read in (rule.formula, *terms) for name in names_in(read)}
     names |= {read.name for read in rule.machine.reads if isinstance(read, Read)}
-    counts = any(isinstance(term, Count) for term in terms)
-    part = arrays.part(names, arrays.objects.keys() if counts else {*violation.binding.values()})
-    names = {*names_behind(frozenset(names), rules.vocabulary)}
+    meanings, meant = rules.vocabulary.meanings, words_meant(rules.vocabulary, arrays.told)
+    names = {*names_behind(names, rules.vocabulary, meant)}
+    among_all = any(isinstance(term, Count) for term in terms)
+    among_all |= any(counts(meanings[name].formula) for name in names.intersection(meant))
+    part = arrays.part(names, arrays.objects.keys() if among_all else {*violation.binding.values()})
     # To be completed as the whole trace would be
     return replace(part, ends="cut" if arrays.is_partial else arrays.ends).trace()
 

@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.fault_messages import NOT_FAULTS, fault_of, is_fault
 from rulec.logic.free_names import names_of
-from rulec.monitoring.implied_values import names_behind
+from rulec.monitoring.told_names import names_behind, words_meant
 from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Verdict
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_frame
@@ -76,16 +76,19 @@ def rule_lost(rule: CompiledRule, fault: RulecError) -> RuleNotJudged:
 
 
 def without_words(
-    book: CompiledRulebook, faults: Mapping[str, RulecError]
+    book: CompiledRulebook, faults: Mapping[str, RulecError], told: frozenset[str] | None
 ) -> tuple[CompiledRulebook, list[RuleNotJudged]]:
     """The rulebook without the rules that read lost words, and these rules.
 
-    What is known of a lost word by a fact is lost with it.
+    What is known of a lost word by a fact is lost with it, and so are words that the source does
+    not tell but that are defined by it.
     """
     if not faults:
         return book, []
+    vocabulary = book.vocabulary
+    meant = words_meant(vocabulary, None if told is None else told | faults.keys())
     read = {
-        rule: faults.keys() & names_behind(names_of(rule.formula), book.vocabulary)
+        rule: faults.keys() & names_behind(names_of(rule.formula), vocabulary, meant)
         for rule in book.rules
     }
     lost = [rule_lost(rule, faults[min(words)]) for rule, words in read.items() if words]

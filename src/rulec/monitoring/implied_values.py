@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from operator import is_
@@ -15,6 +15,7 @@ from rulec.logic.fold import fold
 from rulec.logic.kleene import ObjectBinding, Unknown, evaluator_of
 from rulec.monitoring.constant_values import values_in, with_constants
 from rulec.monitoring.state_view import StateView, put, value_in
+from rulec.monitoring.told_names import untold_names, with_meant, with_untold, words_meant
 from rulec.trace import State, Trace, TraceGraph
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.partly_known.temporal_operators import BitInstants
@@ -92,89 +93,62 @@ def _mentions(value: Any, items: tuple[str, ...]) -> bool:
     return value is not None
 
 
-def words_meant(vocabulary: Vocabulary, told: frozenset[str] | None) -> tuple[str, ...]:
-    """The words that their meanings give in traces of a source, in their order.
-
-    A source that names what it tells leaves out their names, but not the names that they are made
-    of; any other tells all words that have a default.
-    """
-    if not vocabulary.meanings:
-        return ()
-    if told is None:
-        declared = vocabulary.declarations
-        return tuple([name for name in vocabulary.meanings if declared[name].default is None])
-    known, meant = {*told}, []
-    for name, meaning in vocabulary.meanings.items():
-        if name not in told and known >= meaning.reads:
-            known.add(name)
-            meant.append(name)
-    return tuple(meant)
-
-
-def names_behind(names: Sequence[str] | frozenset[str], vocabulary: Vocabulary) -> frozenset[str]:
-    """The names, and those that their meanings are made of."""
-    found = {*names}
-    for name in reversed([*vocabulary.meanings]):
-        if name in found:
-            found |= vocabulary.meanings[name].reads
-    return frozenset(found)
-
-
-def without_calculations(
-    names: Sequence[str], vocabulary: Vocabulary, untold: Set[str]
-) -> tuple[str, ...]:
-    """The names, with the untold quantities of comparisons that are calculated instead of these."""
-    found: dict[str, None] = {}
-    for name in names:
-        meaning = vocabulary.meanings.get(name)
-        if meaning is None or not isinstance(meaning.formula, ltl.Calculated):
-            found[name] = None
-        else:
-            found |= dict.fromkeys(sorted(meaning.reads & untold))
-    return tuple(found)
-
-
 def with_defined_words(trace: Trace, vocabulary: Vocabulary) -> Trace:
     """The trace of valid states, in which nothing is left to the meanings of words."""
-    for name in words_meant(vocabulary, trace.told):
-        meaning = vocabulary.meanings[name]
-        types = vocabulary.declarations[name].parameters
-        states = list(trace.states)
-        for items in choices(types, trace.objects, vocabulary, f"`{name}`"):
-            for place, value in _values(name, meaning, items, _Given(trace, vocabulary)):
-                states[place] = {**states[place], name: put(states[place].get(name), items, value)}
-        trace = replace(trace, states=tuple(states))
-    return trace
+    return DefinedWords(vocabulary, trace.told).in_trace(trace)
 
 
-def with_words_in_state(
-    state: State,
-    objects: Mapping[str, str],
-    told: frozenset[str] | None,
-    vocabulary: Vocabulary,
-) -> State:
-    """A state of a running trace, with words that their meanings give.
+class DefinedWords:
+    """The words that their meanings give in traces of a source, which tells ``told``."""
 
-    What these say of the past is unknown. A state that does not fit the vocabulary stays as it is.
-    """
-    try:
-        alone = Trace("", 1.0, objects, (state,), ends="cut", told=told)
-        return with_defined_words(alone, vocabulary).states[0]
-    except (LookupError, TypeError, AttributeError, AssertionError):
-        return state
+    def __init__(self, vocabulary: Vocabulary, told: frozenset[str] | None) -> None:
+        self._told, self._names = told, words_meant(vocabulary, told)
+        self._vocabulary = vocabulary
+        if self._names:
+            self._vocabulary = with_untold(vocabulary, untold_names(vocabulary, told))
+
+    def __bool__(self) -> bool:
+        """Whether there are any."""
+        return bool(self._names)
+
+    def in_trace(self, trace: Trace) -> Trace:
+        """The trace of valid states, with the words where it does not tell them."""
+        vocabulary = self._vocabulary
+        for name in self._names:
+            meaning = vocabulary.meanings[name]
+            types = vocabulary.declarations[name].parameters
+            states = list(trace.states)
+            for items in choices(types, trace.objects, vocabulary, f"`{name}`"):
+                for place, value in _values(name, meaning, items, _Given(trace, vocabulary)):
+                    own = states[place]
+                    states[place] = {**own, name: put(own.get(name), items, value)}
+            trace = replace(trace, states=tuple(states))
+        return trace
+
+    def in_state(self, state: State, objects: Mapping[str, str]) -> State:
+        """A state of a running trace, with the words.
+
+        What they say of the past is unknown. A state that does not fit the vocabulary stays as it
+        is.
+        """
+        try:
+            alone = Trace("", 1.0, objects, (state,), ends="cut", told=self._told)
+            return self.in_trace(alone).states[0]
+        except (LookupError, TypeError, AttributeError, AssertionError):
+            return state
 
 
 def with_words_in_graph(graph: TraceGraph, vocabulary: Vocabulary) -> TraceGraph:
     """The graph of valid states, with words that their meanings give, as in a running trace."""
-    if not words_meant(vocabulary, graph.told):
+    words = DefinedWords(vocabulary, graph.told)
+    if not words:
         return graph
-
-    def whole(layer: int, state: State) -> State:
-        there = present_in(layer, graph.objects, graph.present)
-        return with_words_in_state(state, there, graph.told, vocabulary)
-
-    layers = [[whole(layer, state) for state in own] for layer, own in enumerate(graph.states)]
-    return replace(graph, states=tuple(map(tuple, layers)))
+    there = [present_in(x, graph.objects, graph.present) for x in range(len(graph.states))]
+    layers = [
+        tuple([words.in_state(state, objects) for state in own])
+        for own, objects in zip(graph.states, there, strict=True)
+    ]
+    return replace(graph, states=tuple(layers), told=with_meant(graph.told, vocabulary))
 
 
 @dataclass(frozen=True, slots=True)

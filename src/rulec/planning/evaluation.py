@@ -40,7 +40,8 @@ def evaluate(
     Raises RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a
     hard rule was compiled for another step; R0501 to R0511 if ``after`` is not a valid past.
     """
-    rules, lost = without_words(rules.fitted_to(graph.step), words.faults if words else {})
+    faults, told = (words.faults, words.told) if words else ({}, None)
+    rules, lost = without_words(rules.fitted_to(graph.step), faults, told)
     traces = graph.trace_graph()
     paths = in_rule_words(graph, traces, graph.objects, rules.vocabulary, reading, words=words)
     past = past_for(graph, paths, rules, HARD, after)

@@ -14,8 +14,8 @@ from rulec.automata.mealy_monitor import stutter_invariant
 from rulec.diagnostics.argument_kinds import checked_kinds
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import partial_names
+from rulec.monitoring.told_names import untold_names
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
-from rulec.monitoring.uncertainty.untold_names import untold_names
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged, Verdict, Violation
 from rulec.partition import NavigationGraph, dead_ends, emergencies
 from rulec.planning.product.graph_product import (

@@ -13,8 +13,10 @@ from rulec.diagnostics.diagnostic import at
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.constant_values import agreed_value, display
+from rulec.monitoring.implied_values import with_words_in_graph
 from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALUE
 from rulec.monitoring.state_validation import check_objects, check_state
+from rulec.monitoring.told_names import with_defaulted
 from rulec.monitoring.verdict import NO_PAST, CarriedState
 from rulec.partition import NavigationGraph, PartitionName
 from rulec.planning.planning_messages import TWO_PARTITIONS, UNFITTING_PAST
@@ -155,7 +157,10 @@ def in_rule_words(
             present={name: span for name, span in words.present.items() if span != always},
             told=words.told,
         )
-    return reading.of(project_graph(traces, vocabulary, SUPPLIED, recorded))
+    found = reading.of(project_graph(traces, vocabulary, SUPPLIED, recorded))
+    if words is not None and found.told is None:
+        found = replace(found, told=with_defaulted(words.told, vocabulary))
+    return with_words_in_graph(found, vocabulary)
 
 
 def past_for(

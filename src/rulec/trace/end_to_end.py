@@ -16,7 +16,6 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Indices
-from rulec.trace.partly_known.partly_known_values import Truth
 
 
 class UnlikeDrivesError(Exception):
@@ -123,14 +122,6 @@ class EndToEnd:
         """The first column of each run of a flag within a drive, and the one after its last."""
         firsts = (flags & (self.begins_here | ~self.before(flags))).nonzero()[0]
         return zip(firsts.tolist(), self.next_state(~flags)[firsts].tolist(), strict=True)
-
-    def lasting(self, truth: Truth, steps: int) -> Truth:
-        """What has been true for more than ``steps``; what was before a drive began is unknown."""
-        since, possibly_since = (self.latest(~half) for half in (truth.sure, truth.possible))
-        goes_on = possibly_since < self.first
-        return Truth(
-            self.columns - since > steps, (self.columns - possibly_since > steps) | goes_on
-        )
 
     def within(self, flags: Flags, steps: int, *, around: bool = False) -> Flags:
         """Mask of states with a flag then or up to ``steps`` later; ``around``: or earlier."""

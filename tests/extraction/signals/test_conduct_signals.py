@@ -18,6 +18,7 @@ from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import HEADINGS, Light, Weather
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.defined_words import defined
 from support.generators.random_recordings import lanes
 from support.signal_arrays import said, unknown_in, values_of
 
@@ -38,6 +39,11 @@ def told(group, word, road, *bodies, side="right", complete=(), route=("1",), **
     return "".join(
         "?" if dark else letters[str(value)] for value, dark in zip(column, unknown, strict=True)
     )
+
+
+def impedes(road, *bodies, lines=""):
+    found = replace(recording(road, bodies), complete=frozenset(SIMULATED))
+    return defined("impedes_traffic", found, lines=lines)
 
 
 def two_way():
@@ -567,19 +573,18 @@ def test_who_stands_before_it_backs_may_have_to(back, expected):
 def test_who_holds_up_others():
     road = [straight(1, 0, 2500, limit_mps=30.0)]
     slow, follower = steady(7, 100, 0, 10, 100), steady(8, 85, 0, 10, 100)
-    found = told(reason_signals, "impedes_traffic", road, slow, follower, complete=SIMULATED)
-    # After ten seconds, of half a second each; how it goes on at the end nobody knows
+    found = impedes(road, slow, follower)
+    # After ten seconds, of half a second each. Whether it has a reason in its last five is unknown
     assert found[:21] == "?" * 20 + "T"
+    assert found[-11:] == "T" + "?" * 10
     assert found[40] == "T"
-    assert set(told(reason_signals, "impedes_traffic", road, slow, complete=SIMULATED)) == {"F"}
+    assert set(impedes(road, slow)) == {"F"}
     # Who falls back, by 1.5 m/s, from 8 m to 23 m behind within 10 s, is slow by itself
     falls_back = steady(8, 85, 0, 8.5, 100)
-    found = told(reason_signals, "impedes_traffic", road, slow, falls_back, complete=SIMULATED)
+    found = impedes(road, slow, falls_back)
     assert set(found) == {"F"}
     leader = steady(9, 115, 0, 10, 100)
-    queue = told(
-        reason_signals, "impedes_traffic", road, slow, follower, leader, complete=SIMULATED
-    )
+    queue = impedes(road, slow, follower, leader)
     assert set(queue) == {"F"}
 
 
@@ -590,7 +595,7 @@ def test_who_gains_speed_is_not_slow_for_good():
     ego, follower = (
         vehicle(n, {k: (x - d, 0) for k, x in enumerate(way)}) for n, d in ((7, 0), (8, 9))
     )
-    found = told(reason_signals, "impedes_traffic", road, ego, follower, complete=SIMULATED)
+    found = impedes(road, ego, follower)
     assert "T" not in found
 
 
@@ -599,10 +604,10 @@ def test_a_cycle_holds_up_nobody():
     road = [straight(1, 0, 2500, limit_mps=13.9)]
     rider = steady(7, 100, 0, 5, 100, kind="bicycle")
     follower = steady(8, 92, 0, 5, 100)
-    found = told(reason_signals, "impedes_traffic", road, rider, follower, complete=SIMULATED)
+    found = impedes(road, rider, follower)
     assert set(found) == {"F"}
     moped = replace(rider, type="motorcycle")
-    found = told(reason_signals, "impedes_traffic", road, moped, follower, complete=SIMULATED)
+    found = impedes(road, moped, follower)
     assert found[40] == "T"
 
 

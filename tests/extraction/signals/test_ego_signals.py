@@ -9,10 +9,10 @@ from rulec import build_lanelet, build_participant, build_recording, verify_reco
 from rulec.extraction.signals.ego_signals import ego_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.defined_words import defined
 from support.generators.random_recordings import lanes
 from support.signal_arrays import (
     bounds_of,
-    letters,
     possibly_said,
     said,
     texts_of,
@@ -70,8 +70,7 @@ def test_speed_in_km_h_and_standing():
 
 def test_what_can_stop_at_once():
     def at(mps):
-        context = context_of(recording(lanes(3), [steady(7, 0, 0, speed=mps)]), ("1",))
-        return letters(ego_signals(context), "can_stop_at_once")
+        return defined("can_stop_at_once", recording(lanes(3), [steady(7, 0, 0, speed=mps)]))
 
     # 20 km/h are 5.56 m/s, and a speed is known to about 0.1 m/s, less well at the ends
     assert (at(5.3), at(5.5), at(5.6), at(5.8)) == ("TTTT", "????", "????", "FFFF")
@@ -79,8 +78,8 @@ def test_what_can_stop_at_once():
 
 def test_acceleration_and_hard_braking():
     def told(body):
-        found = ego_signals(context_of(recording(lanes(3), [body]), ("1",)))
-        return letters(found, "accelerating"), letters(found, "braking_hard")
+        found = recording(lanes(3), [body])
+        return defined("accelerating", found), defined("braking_hard", found)
 
     # 1, 2, 3, 4 m in half seconds: 2, 4, 6 and 8 m/s in the middle of each, so 4 m/s²
     assert told(drive((0, 0), (1, 0), (3, 0), (6, 0), (10, 0))) == ("?TTT?", "FFFFF")

@@ -25,6 +25,7 @@ from rulec.extraction.traffic_thresholds import USUAL
 from rulec.recordings.recording import StatedError
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, vehicle
+from support.defined_words import defined
 from support.generators.random_recordings import lanes
 from support.signal_arrays import said, unknown_in, values_of
 
@@ -185,10 +186,11 @@ def test_a_speed_near_a_threshold():
         ("ZAM", slow, False),
         ("USA_US101", slower, True),
     ):
-        found = ego_signals(context_of(of_source(name, ego)))
-        assert unknown_in(found, "can_stop_at_once").all() == (not known)
-    simulated = ego_signals(context_of(of_source("x", slow, form="SUMO data")))
-    assert not unknown_in(simulated, "can_stop_at_once").any()
+        found = defined("can_stop_at_once", of_source(name, ego))
+        assert (set(found) == {"?"}) == (not known)
+        assert "F" not in found
+    simulated = defined("can_stop_at_once", of_source("x", slow, form="SUMO data"))
+    assert set(simulated) == {"F"}
 
 
 def test_a_simulated_change_of_lanes_in_one_step_is_no_speed():

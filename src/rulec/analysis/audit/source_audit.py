@@ -10,8 +10,8 @@ from typing import Any, Literal, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.logic.free_names import names_in
+from rulec.monitoring.told_names import names_lacking, untold_names, untold_types
 from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
-from rulec.monitoring.uncertainty.untold_names import untold_names, untold_types
 from rulec.value_display import Rows, short_repr
 
 Basis: TypeAlias = Literal["evidence", "presumption", "nothing"]
@@ -82,6 +82,7 @@ def _bases(
         )
         untold = tuple(name for name in read if name in unknown)
         lacking = uncertain_machine(rule, prefixes.get(rule.name)).untold(unknown)
+        lacking = names_lacking(lacking, vocabulary, unknown)
         lacking += tuple([variable.type for variable in rule.variables if variable.type in types])
         basis: Basis = "nothing" if lacking else "presumption" if presumed else "evidence"
         yield RuleBasis(

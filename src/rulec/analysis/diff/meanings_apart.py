@@ -122,6 +122,15 @@ def _implies(cause: ltl.Formula, effect: ltl.Formula, known: Implied) -> bool:
     if cause == effect:
         return True
     match cause, effect:
+        case (
+            ltl.Comparison(((_, ltl.Count() as own),), relation),
+            ltl.Comparison(((_, ltl.Count() as other),)),
+        ) if cause == replace(effect, terms=cause.terms) and relation not in ("=", "!="):
+            # The more objects count, the sooner there are enough
+            bodies = (own, other) if relation[0] == ">" else (other, own)
+            return replace(own, body=other.body) == other and _implies(
+                bodies[0].body, bodies[1].body, known
+            )
         case ((ltl.Comparison() | ltl.Calculated()), (ltl.Comparison() | ltl.Calculated())):
             less = _ends(_compared(effect), _compared(cause))
             return less is not None and _is_within(cause.relation, effect.relation, less)
@@ -161,15 +170,16 @@ def _in_order(
 
 
 def _is_looser(cause: ltl.Unary | ltl.Binary, effect: ltl.Unary | ltl.Binary) -> bool:
-    """Whether another bound makes the effect no harder: `once` may look farther back."""
+    """Whether another bound makes the effect no harder: `once` may look at more states."""
     own, other = cause.bound, effect.bound
-    if own is None or other is None or (own.low, own.unit) != (other.low, other.unit):
+    if own is None or other is None or own.unit != other.unit:
+        return False
+    if cause.operator is ltl.UnaryOperator.HISTORICALLY:
+        own, other = other, own
+    elif cause.operator not in (ltl.UnaryOperator.ONCE, ltl.BinaryOperator.SINCE):
         return False
     highs = [inf if bound.high is None else bound.high for bound in (own, other)]
-    if cause.operator is ltl.UnaryOperator.HISTORICALLY:
-        return highs[1] <= highs[0]
-    loose = (ltl.UnaryOperator.ONCE, ltl.BinaryOperator.SINCE)
-    return cause.operator in loose and highs[0] <= highs[1]
+    return other.low <= own.low and highs[0] <= highs[1]
 
 
 def _is_within(first: ltl.Relation, second: ltl.Relation, room: Fraction) -> bool:

@@ -29,7 +29,7 @@ from rulec.extraction.signals.signal_columns import (
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.track import TrackOutlines
-from rulec.trace.partly_known.partly_known_values import Number, Truth
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.plain_arrays import medians
 
 _EGO_TYPES = {
@@ -72,27 +72,9 @@ def _speed(context: DriveContext) -> Measured:
     return Measured(rounded(speed * KMH_PER_MPS), bounds=speed_bounds(context))
 
 
-def _accelerating(context: DriveContext) -> Truth:
-    return _acceleration_of(context) > context.thresholds.accelerating_mps2
-
-
-def _braking_hard(context: DriveContext) -> Truth:
-    return _acceleration_of(context) < -context.thresholds.braking_hard_mps2
-
-
-def _acceleration_of(context: DriveContext) -> Number:
-    """Ego's acceleration (m/s²) within its error."""
-    return Number.within(context.ego.acceleration[0], context.ego.acceleration_error[0])
-
-
 def _acceleration(context: DriveContext) -> Measured:
     gained, wrong = context.ego.acceleration[0], context.ego.acceleration_error[0]
     return Measured(rounded(gained), bounds=rounded_outward(gained - wrong, gained + wrong))
-
-
-def _stopping(context: DriveContext) -> Truth:
-    (speed, error), slow = own_speed(context), context.thresholds.stops_at_once_kmh / KMH_PER_MPS
-    return Truth.known(speed <= slow).unknown_at(abs(speed - slow) < error)
 
 
 def _lane(context: DriveContext) -> Measured:
@@ -251,10 +233,7 @@ ego_signals = SignalPasses(
         "ego_type": _ego_type,
         "ego_length": _ego_length,
         "speed": _speed,
-        "accelerating": _accelerating,
-        "braking_hard": _braking_hard,
         "acceleration": _acceleration,
-        "can_stop_at_once": _stopping,
         "lane": _lane,
         "lane_number": _lane_number,
         "apart_from_far_lane": _apart_from_far_lane,

@@ -59,6 +59,7 @@ from rulec.extraction.traces.signal_arrays import (
 from rulec.extraction.traces.tellable_types import told_types
 from rulec.extraction.traffic_thresholds import LEAST_S, thresholds_by
 from rulec.monitoring.assumptions import check_assumed
+from rulec.monitoring.told_names import with_defaulted
 from rulec.trace import Value
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_model import Ending
@@ -173,13 +174,13 @@ def to_traces(
         chosen = with_likeliest(chosen, writer.vocabulary)
     kinds = kinds_of(chosen, texts)
     vocabulary = writer.vocabulary
-    told: frozenset[str] | None = None
-    if not writer.defaults:
-        told = frozenset(kinds)
-        if vocabulary is not None:
-            lacking = values_lacking(map_contents(context).types)
-            told |= with_told_values(told - writer.assumed.keys(), vocabulary, lacking)
-            told |= told_types(context.recording.form, vocabulary)
+    told = frozenset(kinds)
+    if vocabulary is not None and writer.defaults:
+        told = with_defaulted(told, vocabulary)
+    elif vocabulary is not None:
+        lacking = values_lacking(map_contents(context).types)
+        told |= with_told_values(told - writer.assumed.keys(), vocabulary, lacking)
+        told |= told_types(context.recording.form, vocabulary)
     kind_of = [kind[0] if vocabulary is None else known_type(kind, vocabulary) for kind in types]
     present, objects = _objects(context, kind_of)
     parts = signal_parts(chosen, texts, present, spans, defaults=writer.defaults)

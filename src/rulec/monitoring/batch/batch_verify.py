@@ -36,9 +36,9 @@ from rulec.monitoring.batch.verify import (
 )
 from rulec.monitoring.bindings import Cast, types_of
 from rulec.monitoring.fault_containment import said
-from rulec.monitoring.implied_values import words_meant
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import check_objects
+from rulec.monitoring.told_names import words_meant
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.resource_limits import CHOICES
 from rulec.trace import Trace

@@ -12,8 +12,9 @@ from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import as_answer, with_place
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.fault_containment import containing_faults
-from rulec.monitoring.implied_values import with_derived_values, words_meant
+from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.state_validation import check_objects, check_states, check_told
+from rulec.monitoring.told_names import words_meant
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.monitoring.verdict import NotJudged, Verdict

@@ -98,12 +98,12 @@ def _judged(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> Sequen
 
 def _without_words(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
     known = rulebook.prepared.setdefault(_without_words, {})
-    words = frozenset(trace.faults)
-    if words not in known:
-        known[words] = without_words(rulebook, trace.faults)[0]
-    (judged,) = _judged([trace], known[words])
+    key = frozenset(trace.faults), trace.told
+    if key not in known:
+        known[key] = without_words(rulebook, trace.faults, trace.told)[0]
+    (judged,) = _judged([trace], known[key])
     answer = answer_to(judged, trace)
     if not isinstance(answer, Verdict):
         return answer
-    _, lost = without_words(rulebook, trace.faults)
+    _, lost = without_words(rulebook, trace.faults, trace.told)
     return without(answer, lost, [*trace.faults.values()])

@@ -33,9 +33,9 @@ from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
+from rulec.monitoring.told_names import untold_names, with_untold
 from rulec.monitoring.uncertainty.known_words import KnownLetters
 from rulec.monitoring.uncertainty.one_completion import completed, favourable, with_all_defaults
-from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
 from rulec.trace import Trace, Value
 from rulec.value_display import short_repr

@@ -17,8 +17,8 @@ from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
 from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.implied_values import with_defined_words, with_derived_values
 from rulec.monitoring.state_view import value_in
+from rulec.monitoring.told_names import untold_names, with_untold
 from rulec.monitoring.uncertainty.suppositions import spelled_out
-from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.trace import Trace
 from rulec.trace.partly_known.column_values import partly_known
 from rulec.trace.partly_known.partly_known_values import (

@@ -13,7 +13,7 @@ from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.diagnostics.fault_messages import contained
-from rulec.monitoring.implied_values import with_words_in_state, words_meant
+from rulec.monitoring.implied_values import DefinedWords
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.four_valued import without_sink, worst_of
 from rulec.monitoring.online.monitor_state import (
@@ -81,7 +81,7 @@ class RunningMonitor:
         self._strengths = {rule.name: rule.strength for rule in rulebook.rules}
         self._told = None if told is None else frozenset(told)
         check_told(self._told, rulebook.vocabulary)
-        self._meant = words_meant(rulebook.vocabulary, self._told)
+        self._meant = DefinedWords(rulebook.vocabulary, self._told)
         self._cut = cut
         machines: Mapping[str, OutcomeMachine] | None = None
         if self._told is not None or cut:
@@ -150,7 +150,7 @@ class RunningMonitor:
         fault of rulec; the monitor then ignores the state.
         """
         if self._meant:
-            state = with_words_in_state(state, objects, self._told, self._rulebook.vocabulary)
+            state = self._meant.in_state(state, objects)
         current, number, _, cache = self._now
         same_objects = objects == current.bound_rules.objects
         if same_objects is True:  # and no array of such answers

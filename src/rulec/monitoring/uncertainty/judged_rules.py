@@ -10,9 +10,13 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.mealy_monitor import Read
 from rulec.automata.outcome_machine import OutcomeMachine, of_running_words
 from rulec.logic.free_names import names_of
-from rulec.monitoring.implied_values import without_calculations
+from rulec.monitoring.told_names import (
+    names_lacking,
+    untold_names,
+    untold_types,
+    with_untold,
+)
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
-from rulec.monitoring.uncertainty.untold_names import untold_names, untold_types, with_untold
 from rulec.monitoring.verdict import RuleNotJudged
 from rulec.vocabulary import Vocabulary
 
@@ -96,7 +100,7 @@ def _judged_rules(
 
     def lack(rule: CompiledRule, outcomes: OutcomeMachine | None) -> tuple[str, ...]:
         machine = uncertain_machine(rule, (outcomes or running[rule.name]) if cut else None)
-        names = without_calculations(machine.untold(unknown), rulebook.vocabulary, unknown)
+        names = names_lacking(machine.untold(unknown), rulebook.vocabulary, unknown)
         return *names, *[own.type for own in rule.variables if own.type in types]
 
     def may_look_kept(rule: CompiledRule) -> bool:

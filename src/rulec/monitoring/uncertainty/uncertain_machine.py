@@ -24,10 +24,10 @@ from rulec.automata.thresholds import scale
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.uncertainty.dependence import BEFORE, Dependence, PossibleAlternative
 from rulec.monitoring.uncertainty.idle_letters import IdleLetters, idle_letters
+from rulec.monitoring.uncertainty.required_names import RequiredNames
 from rulec.monitoring.uncertainty.run_pairs import RunPairs
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses, PossibleWord
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
-from rulec.monitoring.uncertainty.untold_names import RequiredNames
 from rulec.monitoring.verdict import ConditionalOutcome, OpenReasons, OutcomeName, Reason
 from rulec.trace.remembered import Remembered
 

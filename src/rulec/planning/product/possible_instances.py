@@ -22,6 +22,7 @@ from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
 from rulec.monitoring.implied_values import with_implied_in_graph
 from rulec.monitoring.state_validation import check_objects, check_states
+from rulec.monitoring.told_names import names_lacking, untold_names, untold_types, with_untold
 from rulec.monitoring.uncertainty.known_words import run
 from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
@@ -30,7 +31,6 @@ from rulec.monitoring.uncertainty.suppositions import (
     spelled_out,
 )
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
-from rulec.monitoring.uncertainty.untold_names import untold_names, untold_types, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, RuleNotJudged, Violation
 from rulec.planning.product.graph_instance import GraphInstance, Readings, SetMachine
 from rulec.rulebook.rulebook_model import Strength
@@ -109,7 +109,8 @@ class PossibleNodes:
         types = [
             variable.type for variable in rule.variables if variable.type in self._untold_types
         ]
-        return (*uncertain_machine(rule, None).untold(self._untold), *types)
+        lacking = uncertain_machine(rule, None).untold(self._untold)
+        return (*names_lacking(lacking, self._vocabulary, self._untold), *types)
 
     def instances(self, rule: CompiledRule, past: CarriedState) -> list[GraphInstance]:
         """Bind a rule to the graph's objects; no instance if the rule cannot be judged.

@@ -11,8 +11,8 @@ from rulec.extraction.moment_search import DriveMoments
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.moments.formula_moments import Moment
 from rulec.monitoring.state_view import value_in
+from rulec.monitoring.told_names import untold_names, with_untold
 from rulec.monitoring.uncertainty.suppositions import spelled_out
-from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.report.json_document import as_line
 from rulec.report.moments.moment_rows import MomentLine, rows
 from rulec.report.text.terminal_text import broken, counted, visible

@@ -1,4 +1,4 @@
-"""Signals of whether anything makes ego brake, stand or drive slowly, and whom it holds up.
+"""The signal of whether anything makes ego brake, stand or drive slowly.
 
 Reasons that are never recorded, such as an animal, a defect or a passenger to let out, cannot be
 excluded; visible ones are searched as far ahead as ego might have to consider them.
@@ -49,12 +49,12 @@ _REACH_S, _GENTLE_MPS2 = 3.0, 4.0
 _FARTHEST_M = 1000.0
 """Nobody looks farther ahead (m), however fast a vehicle seems to be."""
 
-FOLLOWS_S, _FALLS_BACK_MPS = 3.0, 1.0
-"""Ego holds up vehicles at most ``FOLLOWS_S`` behind, unless ``_FALLS_BACK_MPS`` slower."""
+_FOLLOWS_S = 3.0
+"""Ego may hold up or surprise vehicles at most this far (s) behind."""
 
 _ROAD_M, _HALF, _CALLED_M = 15.0, 0.5, 100.0
-_FAR_SLOWER, _SLOWER = 0.5, 0.75
-"""Parts of the limit: a vehicle slower than the first holds others up, than the second perhaps."""
+_SLOWER = 0.75
+"""Below this part of the limit, rules may ask for a reason."""
 
 _SETS_OFF_S = 2.0
 """No vehicle is expected to set off sooner (s) once it may."""
@@ -233,11 +233,8 @@ def _shows_no_hazard(context: DriveContext) -> Flags:
 
 
 def _reach(context: DriveContext) -> Floats:
-    return reach_at(context.ego.speed[0])
-
-
-def reach_at(speed: Floats) -> Floats:
-    """How far ahead (m) a driver looks for reasons to brake, by speed (m/s)."""
+    """How far ahead (m) a driver looks for reasons to brake."""
+    speed = context.ego.speed[0]
     reach: Floats = _REACH_S * speed + speed**2 / (2 * _GENTLE_MPS2) + REACH_M
     return np.minimum(reach, _FARTHEST_M)
 
@@ -246,41 +243,15 @@ def _all_are_recorded(context: DriveContext) -> bool:
     return "arrivals" in context.recording.complete
 
 
-def _impedes(context: DriveContext) -> Truth:
-    """Whether a vehicle follows ego, which is far below the limit for long without a reason.
-
-    A cycle has one: no law asks for more than its rider's strength. A vehicle that gains speed, as
-    after a stop, is not slow for good.
-    """
-    limit, speed = context.limit_mps, context.ego.speed[0]
-    told = np.isfinite(limit)
-    below = Truth(told & (speed < _FAR_SLOWER * limit), ~told | (speed < _SLOWER * limit))
-    gains = context.ego.acceleration[0] > context.thresholds.accelerating_mps2
-    cycles = context.spans.spread([ego.type == "bicycle" for ego in context.ego.participants])
-    slow = below & context.ego_moves & ~gains & ~_cause_to_brake(context)
-    for_long = context.spans.lasting(slow, context.steps_in(context.thresholds.preparing_s))
-    return for_long & _followed(context, _FALLS_BACK_MPS) & ~cycles
-
-
-def _followed(context: DriveContext, slower_mps: float = np.inf) -> Flags:
-    """Mask of states in which a vehicle is behind ego in its lane, near enough to be held up.
-
-    Vehicles slower than ego by ``slower_mps`` do not count: they fall back at a speed of their own.
-    """
+def _followed(context: DriveContext) -> Flags:
+    """Mask of states in which a vehicle is behind ego in its lane, near enough to be held up."""
     behind = relations.station(context) == relations.IN_FRONT_OF
     behind &= context.going_along
     behind &= context.in_ego_lane
     cells = Cells.at(behind)
     speed = np.maximum(cells.of(context.extents.along), 0.0)
-    near = cells.of(relations.gap(context)) <= FOLLOWS_S * speed
-    near &= speed > context.ego_extents.along[0, cells.columns] - slower_mps
-    return cells.in_columns(near)
+    return cells.in_columns(cells.of(relations.gap(context)) <= _FOLLOWS_S * speed)
 
 
-reason_signals = SignalPasses(
-    {
-        "cause_to_brake": _cause_to_brake,
-        "impedes_traffic": _impedes,
-    }
-)
-"""The signals of reasons to brake and of holding up others."""
+reason_signals = SignalPasses({"cause_to_brake": _cause_to_brake})
+"""The signal of reasons to brake."""

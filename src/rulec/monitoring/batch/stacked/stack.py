@@ -20,7 +20,7 @@ from rulec.monitoring.batch.columns.meant_columns import MeaningReader
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
 from rulec.monitoring.batch.joined.object_pairs import ObjectPairs
 from rulec.monitoring.batch.joined.trace_places import TracePlaces
-from rulec.monitoring.implied_values import words_meant
+from rulec.monitoring.told_names import words_meant
 from rulec.trace.partly_known.column_values import partly_known
 from rulec.trace.partly_known.partly_known_values import NameValues
 from rulec.trace.trace_columns import Array

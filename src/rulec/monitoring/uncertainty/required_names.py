@@ -8,18 +8,14 @@ The same holds for types of objects.
 from __future__ import annotations
 
 from collections.abc import Set
-from dataclasses import replace
 from itertools import chain
-from typing import Any
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.outcome_machine import VIOLATED, OutcomeMachine, bits_of
-from rulec.monitoring.implied_values import words_meant
+from rulec.monitoring.told_names import NEVER_FALSE, NEVER_TRUE
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
 from rulec.trace.remembered import Remembered
-from rulec.vocabulary import Enumeration, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN
 
 MOST_LOOKED_AT = 1 << 21
 """After so many states with a letter the search ends.
@@ -33,38 +29,6 @@ compare all states takes longer."""
 
 MOST_REPETITIONS = 1 << 12
 """A letter is repeated at most so often."""
-
-
-def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
-    """The names that a source which provides ``told`` lacks, and that are not presumed."""
-    if told is None:
-        return frozenset()
-    told = frozenset((*told, *words_meant(vocabulary, told)))
-    untold = []
-    for name, item in vocabulary.declarations.items():
-        if name not in told:
-            untold += [] if item.presumed else [name]
-        elif isinstance(item, Enumeration) and not told.isdisjoint(item.values):
-            untold += [value for value in item.values if value not in told]
-    return frozenset(untold)
-
-
-def untold_types(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
-    """The types of objects that a source which provides others by name never provides."""
-    types = vocabulary.types.keys()
-    return frozenset() if told is None or types.isdisjoint(told) else frozenset(types - {*told})
-
-
-def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
-    """The vocabulary in which untold names are unknown where no state contains them."""
-    if not untold:
-        return vocabulary
-    unknown: Any = UNKNOWN
-    declarations = {
-        name: replace(item, default=unknown) if name in untold else item
-        for name, item in vocabulary.declarations.items()
-    }
-    return replace(vocabulary, declarations=declarations)
 
 
 class RequiredNames:
@@ -202,5 +166,9 @@ class RequiredNames:
 
 
 def _values_of(read: Read | NumberRead) -> dict[str, int]:
-    """The digits of an enumeration's values that a read distinguishes."""
-    return {value: read.digit(value) for value in read.values} if isinstance(read, Read) else {}
+    """The digits of the values that a read distinguishes, by how they are called if untold."""
+    if not isinstance(read, Read):
+        return {}
+    if not read.values:
+        return {read.name + NEVER_FALSE: 0, read.name + NEVER_TRUE: 1}
+    return {value: read.digit(value) for value in read.values}
