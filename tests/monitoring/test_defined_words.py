@@ -77,11 +77,14 @@ hard rule catches_up(c: car) { require always (hurries implies close(c)) }
 
 
 @pytest.mark.parametrize(
-    ("behind", "violated", "still_open"),
-    [(False, {"catches_up"}, set()), (True, set(), {"catches_up"})],
+    ("behind", "violated", "still_open", "asked"),
+    [(False, {"catches_up"}, set(), ()), (True, set(), {"catches_up"}, ("keeps", "calm"))],
 )
-def test_what_is_not_told_matters_where_it_decides(behind, violated, still_open):
-    """Who is not behind is not close, whatever the gap; that somebody is close nobody can know."""
+def test_what_is_not_told_matters_where_it_decides(behind, violated, still_open, asked):
+    """Who is not behind is not close, whatever the gap; that somebody is close nobody can know.
+
+    Nor can anybody have been close for a second, in a single state.
+    """
     told = frozenset({"behind", "hurries", "car"})
     trace = Trace("t", 1.0, {"o": "car"}, ({"hurries": True, "behind": {"o": behind}},), told=told)
     verdict = verify(trace, PARTLY)
@@ -89,9 +92,10 @@ def test_what_is_not_told_matters_where_it_decides(behind, violated, still_open)
     assert {own.rule for own in verdict.violations} == violated
     assert {own.rule for own in verdict.open} == still_open
     lacking = {own.rule: own.untold for own in verdict.not_judged}
-    assert lacking == dict.fromkeys(("keeps", "parts", "calm"), ("gap",))
+    assert lacking == dict.fromkeys(asked, ("gap",))
+    assert {*verdict.kept_regardless, *lacking} == {"keeps", "parts", "calm"}
     monitor = Monitor(PARTLY, 1.0, told=told, cut=False)
-    assert {*monitor.not_judged} == lacking.keys()
+    assert {*monitor.not_judged} == {"keeps", "parts", "calm"}
 
 
 TRUTHS = st.sampled_from((True, True, False, UNKNOWN))
