@@ -56,7 +56,6 @@ NOT_FOR_A_RECORDING = {
     "matplotlib",
     "msgspec",
     "networkx",
-    "numpy.ma",
     "pyarrow",
     "spot",
     "rulec.automata.bundle.bundle_file",

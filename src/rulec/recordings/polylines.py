@@ -82,8 +82,14 @@ def densified(points: Points, every_m: float) -> Points:
 
 def densified_lines(lines: Sequence[Points], every_m: float) -> tuple[Points, list[int]]:
     """The same for several lines: their points end to end, and how many each has."""
-    dense = shapely.segmentize([shapely.LineString(line) for line in lines], every_m)
-    return shapely.get_coordinates(dense), shapely.get_num_coordinates(dense).tolist()
+    dense = [
+        # GEOS makes a single point of a line without length, and refuses it
+        shapely.get_coordinates(shapely.segmentize(shapely.LineString(line), every_m))
+        if (line != line[0]).any()
+        else line
+        for line in lines
+    ]
+    return np.concatenate(dense), [len(line) for line in dense]
 
 
 def parallel_line(points: Points, offset: float | NDArray[float64]) -> Points:

@@ -20,6 +20,8 @@ from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.outcome_machine import VIOLATED
+from rulec.diagnostics import RulecError
+from rulec.monitoring.fault_containment import rule_lost, without
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules
 from rulec.monitoring.uncertainty.uncertain_machine import Answer
 from rulec.monitoring.verdict import (
@@ -37,6 +39,9 @@ Place: TypeAlias = tuple[int, ...]
 """The place of a finding: of its rule and of its objects."""
 
 _PLACE = itemgetter(0)
+
+RuleFault: TypeAlias = tuple[CompiledRule, RulecError]
+"""A rule, and the fault of rulec that it has met."""
 
 NOTHING_APART: Mapping[int, Set[RuleFor]] = {}
 """All that is open counts."""
@@ -103,14 +108,14 @@ class Findings:
         n_traces: int,
         names: Sequence[str],
         whole: Set[int],
-        lacked: Callable[[], Mapping[int, Set[str]]],
+        lacked: Callable[[], tuple[Mapping[int, Set[str]], Sequence[RuleFault]]],
     ) -> None:
         self.n_traces = n_traces
         self._rules = rules
         self._names = names
         self._whole = whole
         self._of_rules: list[RuleFindings] = []
-        self._lacked: list[Callable[[], Mapping[int, Set[str]]]] = [lacked]
+        self._lacked = [lacked]
         self._single: dict[int, list[tuple[Place, ViolationOrOpen]]] = defaultdict(list)
 
     def add(self, rule_findings: RuleFindings) -> None:
@@ -189,9 +194,12 @@ class Findings:
         if number in self._whole:
             return Verdict(name, violations)
         presumed = tuple([own for own in self._rules.presumed if not says(own)])
-        not_judged, regardless = self._rules.unanswered(self._doubtful.get(number, set()))
+        unknown, faults = self._doubtful
+        not_judged, regardless = self._rules.unanswered(unknown.get(number, set()))
         own = Verdict(name, violations, doubtful, not_judged, presumed)
-        return replace(own, kept_regardless=regardless)
+        own = replace(own, kept_regardless=regardless)
+        lost = [rule_lost(*fault) for fault in faults]
+        return without(own, lost, [fault for _, fault in faults]) if faults else own
 
     def of(self, number: int) -> tuple[tuple[Violation, ...], tuple[OpenVerdict, ...]]:
         """The violations of a trace, and its open verdicts."""
@@ -206,9 +214,9 @@ class Findings:
         return violations, tuple([result for result in findings if isinstance(result, OpenVerdict)])
 
     @cached_property
-    def _doubtful(self) -> Mapping[int, Set[str]]:
+    def _doubtful(self) -> tuple[Mapping[int, Set[str]], Sequence[RuleFault]]:
         # What finds them keeps all values of the traces alive
-        return self._lacked.pop()() if self._rules.lacking else {}
+        return self._lacked.pop()() if self._rules.lacking else ({}, ())
 
     @cached_property
     def _by_trace(self) -> dict[int, list[_Row]]:

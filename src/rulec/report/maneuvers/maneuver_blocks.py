@@ -147,10 +147,10 @@ def listed_block(
     verdict = shown.verdicts.get(maneuver.nodes)
     doubtful = () if verdict is None else verdict.open
     remark = "; open" if any(open_verdict.strength == "hard" for open_verdict in doubtful) else ""
-    details = [
-        *_as_driven(maneuver, shown.driven),
-        *_open_lines(maneuvers, doubtful, shown.layout),
-    ]
+    details = _as_driven(maneuver, shown.driven)
+    if not details or shown.layout.reasons:
+        # Its trajectory is undecided only on rules that it puts to the test
+        details += _open_lines(maneuvers, doubtful, shown.layout)
     return maneuver_block(
         maneuvers.graph, number, maneuver, shown.layout, remark=remark, details=details
     )

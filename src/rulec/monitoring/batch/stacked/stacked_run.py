@@ -14,6 +14,7 @@ from rulec.array_types import Flags
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
+from rulec.diagnostics.fault_messages import fault_of
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.findings import (
@@ -21,6 +22,7 @@ from rulec.monitoring.batch.findings import (
     JudgedTrace,
     Place,
     Reasons,
+    RuleFault,
     RuleFindings,
     ViolationOrOpen,
 )
@@ -286,25 +288,35 @@ class _LackingRules:
     rulebook: CompiledRulebook
     close: _CloseLooks
 
-    def doubtful(self) -> Mapping[int, Set[str]]:
-        """By trace the rules that it does not keep whatever these names are."""
+    def doubtful(self) -> tuple[Mapping[int, Set[str]], Sequence[RuleFault]]:
+        """By trace the rules that it does not keep whatever these names are; and faults."""
         doubtful: dict[int, set[str]] = defaultdict(set)
+        faults: list[RuleFault] = []
         every = range(len(self.reader.stack.begins) - 1)
         busy = self.simple.busy(self.reader)
         for number, rule in enumerate(self.ready.rules):
             name = rule.rule.name
             if name not in self.ready.judged.lacking:
                 continue
-            if number not in self.simple.rules:
-                sure, closely = set[int](), {*every}
-            elif number in busy:
-                sure, closely = self._doubtful_in(rule, every)
-            else:
+            try:
+                sure = self._not_surely_kept(number, rule, every, busy)
+            except Exception as problem:
+                faults.append((rule.rule, fault_of(problem, f"rule {name}")))
                 continue
-            sure |= {x for x in closely - sure if self.close[x].is_doubtful(name)}
             for trace in sure:
                 doubtful[trace].add(name)
-        return doubtful
+        return doubtful, faults
+
+    def _not_surely_kept(
+        self, number: int, rule: StackedRule, every: range, busy: Set[int]
+    ) -> set[int]:
+        if number not in self.simple.rules:
+            sure, closely = set[int](), {*every}
+        elif number in busy:
+            sure, closely = self._doubtful_in(rule, every)
+        else:
+            return set()
+        return sure | {x for x in closely - sure if self.close[x].is_doubtful(rule.rule.name)}
 
     def _doubtful_in(self, rule: StackedRule, every: range) -> tuple[set[int], set[int]]:
         """The traces in which a rule is not surely kept, and those of which states decide it."""
