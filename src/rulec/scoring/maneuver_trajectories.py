@@ -106,10 +106,12 @@ def trajectory_scores(maneuvers: Maneuvers, listed: Sequence[Maneuver]) -> Traje
 def _tested(score: CandidateScore, rules: CompiledRulebook) -> TestedRules:
     """The hard rules that a trajectory, with its past, surely meets."""
     met: set[str] = set()
-    for own in score.drives:
-        if isinstance(own, DriveVerdict) and isinstance(own.answer, Verdict):
-            exposures = facts_of(own.drive.arrays, rules, Verdict("", ())).exposure
-            met |= {name for name, own in exposures.items() if own.opportunities}
+    # Opportunities of all rules, also of those that are not judged
+    nothing_known = Verdict("", ())
+    for driven in score.drives:
+        if isinstance(driven, DriveVerdict) and isinstance(driven.answer, Verdict):
+            exposures = facts_of(driven.drive.arrays, rules, nothing_known).exposure
+            met |= {name for name, exposure in exposures.items() if exposure.opportunities}
     doubtful = {x.rule for x in score.open}.union(x.rule for x in score.not_judged)
     broken = {violation.rule for violation in score.violations}
     tested = [x.name for x in rules.rules if x.strength == "hard" and x.name in met - broken]

@@ -98,8 +98,8 @@ _Row: TypeAlias = tuple[RuleFindings, int, int, Place]
 class Findings:
     """The findings on numbered traces for ``rules``; ``names`` are those of the objects.
 
-    Everything is known about the traces that are ``whole``. ``lacked`` finds the rules among those
-    that lack names that are doubtful in each trace, once a verdict is asked for.
+    Everything is known about the traces that are ``whole``. ``find_doubtful`` is asked once, for a
+    verdict: by trace the rules that lack names and are not surely kept, and faults met on the way.
     """
 
     def __init__(
@@ -108,14 +108,14 @@ class Findings:
         n_traces: int,
         names: Sequence[str],
         whole: Set[int],
-        lacked: Callable[[], tuple[Mapping[int, Set[str]], Sequence[RuleFault]]],
+        find_doubtful: Callable[[], tuple[Mapping[int, Set[str]], Sequence[RuleFault]]],
     ) -> None:
         self.n_traces = n_traces
         self._rules = rules
         self._names = names
         self._whole = whole
         self._of_rules: list[RuleFindings] = []
-        self._lacked = [lacked]
+        self._find_doubtful = [find_doubtful]
         self._single: dict[int, list[tuple[Place, ViolationOrOpen]]] = defaultdict(list)
 
     def add(self, rule_findings: RuleFindings) -> None:
@@ -196,8 +196,7 @@ class Findings:
         presumed = tuple([own for own in self._rules.presumed if not says(own)])
         unknown, faults = self._doubtful
         not_judged, regardless = self._rules.unanswered(unknown.get(number, set()))
-        own = Verdict(name, violations, doubtful, not_judged, presumed)
-        own = replace(own, kept_regardless=regardless)
+        own = Verdict(name, violations, doubtful, not_judged, presumed, kept_regardless=regardless)
         lost = [rule_lost(*fault) for fault in faults]
         return without(own, lost, [fault for _, fault in faults]) if faults else own
 
@@ -215,8 +214,8 @@ class Findings:
 
     @cached_property
     def _doubtful(self) -> tuple[Mapping[int, Set[str]], Sequence[RuleFault]]:
-        # What finds them keeps all values of the traces alive
-        return self._lacked.pop()() if self._rules.lacking else ({}, ())
+        # Let go with its answer: what finds them keeps all values of the traces alive
+        return self._find_doubtful.pop()() if self._rules.lacking else ({}, ())
 
     @cached_property
     def _by_trace(self) -> dict[int, list[_Row]]:

@@ -60,11 +60,10 @@ def judged_rules(
 ) -> JudgedRules:
     """The rules for a source that provides these names, or all names if None.
 
-    Without a machine are rules about objects of types that the source cannot tell, and those whose
-    machine would be too large for the step or for traces that are ``cut``. Raises RulecError R0403
-    if Spot, which builds
-    the machines for these, is not installed. The result is cached, since it is needed for every
-    trace.
+    Without a machine are rules that would look kept because of a value or a type that the source
+    never tells, and those whose machine would be too large for the step or for traces that are
+    ``cut``. Raises RulecError R0403 if Spot, which builds the machines for these, is not installed.
+    The result is cached, since it is needed for every trace.
     """
     known: dict[object, JudgedRules] = rulebook.prepared.setdefault(JudgedRules, {})
     if (told, cut) not in known:

@@ -157,14 +157,21 @@ def listed_block(
 
 
 def driven_counts(driven: TrajectoryScores | None) -> list[str]:
-    """How many of the trajectories keep every hard rule whose trigger they meet."""
+    """How many of the trajectories keep every hard rule whose trigger they meet, or why none."""
     if driven is None:
         return []
-    why = ": a trajectory keeps each hard rule put to the test" if driven.lawful else ""
-    rules = dict.fromkeys(rule for tested in driven.tested.values() for rule in tested.undecided)
-    if rules and not driven.lawful:
-        why = f": undecided on {first_of([*rules], MOST_NAMED)}"
-    return [visible(f"lawful      {len(driven.lawful)} of {len(driven.of)} tried{why}")]
+    why = "a trajectory keeps each hard rule put to the test"
+    if not driven.lawful:
+        hard = (
+            x.rule for own in driven.of.values() for x in own.violations if x.strength == "hard"
+        )
+        broken = list(dict.fromkeys(hard))
+        undecided = [rule for tested in driven.tested.values() for rule in tested.undecided]
+        others = [rule for rule in dict.fromkeys(undecided) if rule not in broken]
+        parts = [f"violated {first_of(broken, MOST_NAMED)}"] if broken else []
+        parts += [f"undecided on {first_of(others, MOST_NAMED)}"] if others else []
+        why = "; ".join(parts) or "no hard rule is put to the test"
+    return [visible(f"lawful      {len(driven.lawful)} of {len(driven.of)} tried: {why}")]
 
 
 def _as_driven(maneuver: Maneuver, driven: TrajectoryScores | None) -> list[str]:

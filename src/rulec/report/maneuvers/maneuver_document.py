@@ -206,6 +206,7 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     those all of whose trajectories violate one (``violating``). Of the others, ``lawful`` are those
     tried in a recorded scene whose trajectory keeps each hard rule whose trigger it surely meets,
     and meets some; the rest is ``undecided``.
+
     For ``open`` maneuvers, besides those ``satisfying``, the verdict depends on ``unknown`` values;
     ``exact`` is false if there were too many cases to examine, so that some verdicts may be known
     after all. ``judged`` are the rules kept or violated for certain by at least half of the

@@ -75,14 +75,15 @@ class ViolationTally:
 
     def outcomes(self, rules: Iterable[str]) -> dict[str, RuleOutcome]:
         """What became of each of these rules."""
-        return {rule: self._outcome(rule) for rule in rules}
+        answered = self.with_answer
+        return {rule: self._outcome(rule, is_answered=rule in answered) for rule in rules}
 
-    def _outcome(self, rule: str) -> RuleOutcome:
+    def _outcome(self, rule: str, *, is_answered: bool) -> RuleOutcome:
         if rule in self.first_s:
             return "found"
         if rule in self.open_rules:
             return "open"
-        if rule not in self.with_answer:
+        if not is_answered:
             return "not judged"
         if self.judged_in[rule] == self.regardless_in[rule]:
             return "kept regardless"

@@ -75,6 +75,8 @@ class ManeuverQuestions:
         ranked = None if self.n_ranked is None else maneuvers.ranked(self.n_ranked)
         shown = [*(listed or ()), *(rank.maneuver for rank in (*(best or ()), *(ranked or ())))]
         tried = shown or (maneuvers.cheapest(_N_TRIED, perhaps=True) if maneuvers.words else [])
+        # Which of those tried are free, if any is
+        judged_whole = tried if listed is None and maneuvers.satisfying else listed or ()
         uncertain = any(obstacle.alternatives for obstacle in maneuvers.graph.scenario.obstacles)
         uncertain = uncertain or (self.worlds and form == "json")
         classes = None
@@ -89,7 +91,7 @@ class ManeuverQuestions:
             best=best,
             ranked=ranked,
             chances=_chances(maneuvers, shown) if uncertain else {},
-            verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or tried}
+            verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in judged_whole}
             if maneuvers.in_doubt
             else {},
             worlds=lazy.alternative_counts(maneuvers) if self.worlds else None,

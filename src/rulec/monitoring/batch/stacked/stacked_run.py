@@ -84,7 +84,10 @@ class StackedRun:
         whole: set[int] = set()
         if traces.kind.is_whole:
             whole = {*range(n_traces)} - self._stack.partial_traces()
-        lacking = _LackingRules(self._ready, self._simple, self._reader, rules, self._close)
+        self._busy = self._simple.busy(self._reader)
+        lacking = _LackingRules(
+            self._ready, self._simple, self._busy, self._reader, rules, self._close
+        )
         self._findings = Findings(
             judged, n_traces, traces.names, frozenset(whole), lacking.doubtful
         )
@@ -93,9 +96,8 @@ class StackedRun:
 
     def judged(self) -> list[JudgedTrace | None]:
         """The traces with their findings; None for those that must be judged by their states."""
-        simple = self._simple
+        simple, busy = self._simple, self._busy
         suspects = self._suspects(contradicted(simple.facts, self._reader))
-        busy = simple.busy(self._reader)
         for number, rule in enumerate(self._ready.rules):
             if rule.rule.name in self._ready.judged.lacking:
                 continue
@@ -284,6 +286,7 @@ class _LackingRules:
 
     ready: _ReadyRules
     simple: _SimpleRules
+    busy: Set[int]
     reader: StackReader
     rulebook: CompiledRulebook
     close: _CloseLooks
@@ -293,13 +296,12 @@ class _LackingRules:
         doubtful: dict[int, set[str]] = defaultdict(set)
         faults: list[RuleFault] = []
         every = range(len(self.reader.stack.begins) - 1)
-        busy = self.simple.busy(self.reader)
         for number, rule in enumerate(self.ready.rules):
             name = rule.rule.name
             if name not in self.ready.judged.lacking:
                 continue
             try:
-                sure = self._not_surely_kept(number, rule, every, busy)
+                sure = self._not_surely_kept(number, rule, every)
             except Exception as problem:
                 faults.append((rule.rule, fault_of(problem, f"rule {name}")))
                 continue
@@ -307,12 +309,10 @@ class _LackingRules:
                 doubtful[trace].add(name)
         return doubtful, faults
 
-    def _not_surely_kept(
-        self, number: int, rule: StackedRule, every: range, busy: Set[int]
-    ) -> set[int]:
+    def _not_surely_kept(self, number: int, rule: StackedRule, every: range) -> set[int]:
         if number not in self.simple.rules:
             sure, closely = set[int](), {*every}
-        elif number in busy:
+        elif number in self.busy:
             sure, closely = self._doubtful_in(rule, every)
         else:
             return set()
