@@ -84,10 +84,7 @@ class StackedRun:
         whole: set[int] = set()
         if traces.kind.is_whole:
             whole = {*range(n_traces)} - self._stack.partial_traces()
-        self._busy = self._simple.busy(self._reader)
-        lacking = _LackingRules(
-            self._ready, self._simple, self._busy, self._reader, rules, self._close
-        )
+        lacking = _LackingRules(self._ready, self._simple, self._reader, rules, self._close)
         self._findings = Findings(
             judged, n_traces, traces.names, frozenset(whole), lacking.doubtful
         )
@@ -96,7 +93,7 @@ class StackedRun:
 
     def judged(self) -> list[JudgedTrace | None]:
         """The traces with their findings; None for those that must be judged by their states."""
-        simple, busy = self._simple, self._busy
+        simple, busy = self._simple, self._simple.busy(self._reader)
         suspects = self._suspects(contradicted(simple.facts, self._reader))
         for number, rule in enumerate(self._ready.rules):
             if rule.rule.name in self._ready.judged.lacking:
@@ -286,7 +283,6 @@ class _LackingRules:
 
     ready: _ReadyRules
     simple: _SimpleRules
-    busy: Set[int]
     reader: StackReader
     rulebook: CompiledRulebook
     close: _CloseLooks
@@ -296,12 +292,13 @@ class _LackingRules:
         doubtful: dict[int, set[str]] = defaultdict(set)
         faults: list[RuleFault] = []
         every = range(len(self.reader.stack.begins) - 1)
+        busy = self.simple.busy(self.reader)
         for number, rule in enumerate(self.ready.rules):
             name = rule.rule.name
             if name not in self.ready.judged.lacking:
                 continue
             try:
-                sure = self._not_surely_kept(number, rule, every)
+                sure = self._not_surely_kept(number, rule, every, busy)
             except Exception as problem:
                 faults.append((rule.rule, fault_of(problem, f"rule {name}")))
                 continue
@@ -309,10 +306,12 @@ class _LackingRules:
                 doubtful[trace].add(name)
         return doubtful, faults
 
-    def _not_surely_kept(self, number: int, rule: StackedRule, every: range) -> set[int]:
+    def _not_surely_kept(
+        self, number: int, rule: StackedRule, every: range, busy: Set[int]
+    ) -> set[int]:
         if number not in self.simple.rules:
             sure, closely = set[int](), {*every}
-        elif number in self.busy:
+        elif number in busy:
             sure, closely = self._doubtful_in(rule, every)
         else:
             return set()
