@@ -42,8 +42,8 @@ EGO = 32 + 5 * TIMES
 """Ego turns left; its middle is in the junction at 4 s, on the others' ways some 2 s later."""
 
 LATER = 82 + 10 * (TIMES - 6.0)
-FIRST = np.where(TIMES < 7, 80.8 + 0.6 * TIMES, 85 + 10 * (TIMES - 7))
-"""One creeps into the junction before ego does, and drives on once ego is past."""
+FIRST = np.where(TIMES < 7, np.minimum(80.2 + 1.2 * TIMES, 83), 83 + 10 * (TIMES - 7))
+"""One creeps into the junction before ego does, stops for it, and drives on once ego is past."""
 
 
 def told(**ways):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import unknown_in, values_of
@@ -22,7 +23,7 @@ ROADS = [
 STEP_S, STEPS = 0.1, 80
 
 
-def from_the_right(y, roads=ROADS, kind="car", word="conflict_from_right"):
+def from_the_right(y, roads=ROADS, kind="car", word="conflict_from_right", others=()):
     """T, F or ? of whether it is in conflict with ego, which goes east at 10 m/s.
 
     Ego drives into the junction at 1.4 s; its front is in the other's way at 1.7 s, as wide as that
@@ -31,7 +32,7 @@ def from_the_right(y, roads=ROADS, kind="car", word="conflict_from_right"):
     ego = vehicle(7, {k: (-20 + k, 0) for k in range(STEPS)}, speed=10)
     places = {k: (0, float(y[k])) for k in range(STEPS)}
     other = vehicle(8, places, kind, speed=10, heading=np.pi / 2)
-    found = recording(roads, [ego, other], step_s=STEP_S)
+    found = recording(roads, [ego, other, *others], step_s=STEP_S)
     found = replace(found, complete=frozenset({"YIELD"}))
     told = priority_signals(context_of(found, route=("1", "2", "3")))
     return "?" if unknown_in(told, word).any() else "FT"[int(values_of(told, word).any())]
@@ -43,17 +44,62 @@ def driven(begin, times, speeds):
     return begin + np.concatenate(([0.0], np.cumsum(mps[:-1]) * STEP_S))
 
 
-@pytest.mark.parametrize(("mps2", "conflict"), [(4.0, "T"), (1.2, "F")])
+@pytest.mark.parametrize(("mps2", "conflict"), [(4.0, "T"), (1.2, "?")])
 def test_who_brakes_hard_as_ego_comes_is_held_up_though_it_is_slow_when_ego_drives_in(
     mps2, conflict
 ):
     """At 10 m/s it would be there at 3.0 s, 0.7 s after ego has left; it comes by 5.2 s or 3.5 s.
 
-    It brakes down to 5.5 m/s, or 8, from 0.2 s on.
+    It brakes down to 5.5 m/s, or 8, from 0.2 s on: if gently, for ego or anything else.
     """
     slowest = 5.5 if conflict == "T" else 8.0
     y = driven(-33.0, [0.2, 0.2 + (10 - slowest) / mps2], [10.0, slowest])
     assert from_the_right(y) == conflict
+
+
+# Brakes by 4 m/s² to 5.5 m/s, and comes at 5.2 s, 2.9 s after ego has left
+HARD = driven(-33.0, [0.2, 1.3], [10.0, 5.5])
+
+
+def with_light(colour):
+    light = Light(0, ((colour, 1000),))
+    return [replace(x, lights=(light,)) if x.id == "4" else x for x in ROADS]
+
+
+@pytest.mark.parametrize(
+    ("roads", "conflict"),
+    [
+        (with_light("green"), "T"),
+        (with_light("red"), "?"),
+        ([replace(x, signs=frozenset({"YIELD"})) if x.id == "4" else x for x in ROADS], "?"),
+    ],
+    ids=["green", "red", "sign"],
+)
+def test_who_brakes_hard_where_a_sign_or_a_light_stops_it_may_do_so_for_that(roads, conflict):
+    assert from_the_right(HARD, roads) == conflict
+
+
+@pytest.mark.parametrize(("begin", "conflict"), [(-10.0, "?"), (60.0, "T")])
+def test_who_brakes_hard_behind_another_one_may_do_so_for_that(begin, conflict):
+    """The other one goes before it over the junction, before ego comes; or it is past."""
+    ahead = vehicle(9, {k: (0, begin + k) for k in range(STEPS)}, speed=10, heading=np.pi / 2)
+    assert from_the_right(HARD, others=[ahead]) == conflict
+
+
+@pytest.mark.parametrize(("gap_s", "conflict"), [(0.4, "T"), (1.4, "F")])
+def test_who_passes_clear_of_ego_as_fast_as_before_is_not_disturbed(gap_s, conflict):
+    """Ego's rear is past its side at x = 1 at 2.3 s; the other's front comes to y = -1 after that.
+
+    The bodies are 2 m wide, so that they follow each other as fast as that on the place between.
+    """
+    y = 10 * (np.arange(STEPS) * STEP_S - 2.3 - gap_s) - 3
+    assert from_the_right(y) == conflict
+
+
+@pytest.mark.parametrize(("mps", "conflict"), [(10.0, "T"), (3.0, "F")])
+def test_who_could_not_have_come_that_soon_was_not_held_up(mps, conflict):
+    """It brakes by 4 m/s² down to half its speed, 26 m away when ego was to drive in."""
+    assert from_the_right(driven(-33.0, [0.2, 0.2 + mps / 9], [mps, 0.55 * mps])) == conflict
 
 
 @pytest.mark.parametrize(("middle_s", "conflict"), [(1.3, "F"), (1.4, "?"), (1.5, "T"), (1.8, "T")])

@@ -96,11 +96,12 @@ def test_a_recording_that_ends_while_both_are_there_tells_that_ego_did_not_wait(
     conflict, unknown = told(at(5.5)[:28], ego=EGO[:28])
     assert conflict.any()
     assert not unknown.any()
-    # Ego may still stop for one that has come just then, or stands there
-    conflict, unknown = told(at(5.5)[:25], ego=EGO[:25])
+    # Ego may still stop for one that is about to come, or stands there
+    conflict, unknown = told(at(5.5)[:24], ego=EGO[:24])
     assert not conflict.any()
     assert unknown.any()
-    stands = np.minimum(EGO, 32 + 5 * 5.25)
+    # Its nose is at the edge of the other's way
+    stands = np.minimum(EGO, 57.0)
     conflict, unknown = told(at(5.5)[:28], ego=stands[:28])
     assert not conflict.any()
     assert unknown.any()

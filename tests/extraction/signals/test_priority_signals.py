@@ -9,7 +9,7 @@ import pytest
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.tracks.at_junctions.junctions import junctions_of
-from rulec.recordings.recording import Recording, TrackState
+from rulec.recordings.recording import Recording
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.net import read_net
 from rulec.scenario.recorded.reference_line import turn
@@ -249,28 +249,6 @@ def test_a_conflict_is_one_of_a_single_junction():
     assert from_right[9]
 
 
-@pytest.mark.parametrize(("turns", "perhaps"), [((0, 2), True), ((4, 6), False), ((6, 9), False)])
-def test_one_that_brakes_where_its_road_bends_may_do_so_for_the_bend(turns, perhaps):
-    """It stops from 10 m/s at 2.5 s, and comes 4.5 s after ego has left.
-
-    It turns by 0.5 rad before it brakes, as it does, or afterwards.
-    """
-    times, places = [0, 2, 3, 6.5, 7], [-32, -12, -7, -7, -3]
-    ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
-    other = vehicle(8, {k: (0, np.interp(k / 2, times, places)) for k in STEPS}, heading=np.pi / 2)
-    speeds = [10.0] * 5 + [0.0] * 8 + [8.0] * 3
-    headings = np.pi / 2 + np.interp(STEPS, turns, [-0.25, 0.25])
-    states = {
-        k: TrackState(s.x, s.y, headings[k], speeds[k], -6.0 if k in (4, 5) else 0.0)
-        for k, s in other.states.items()
-    }
-    bodies = [ego, replace(other, states=states)]
-    found = replace(recording([*EAST, *NORTH], bodies), complete=frozenset({"YIELD"}))
-    told = priority_signals(context_of(found, route=("1", "2", "3")))
-    assert not values_of(told, "conflict_from_right").any()
-    assert unknown_in(told, "conflict_from_right").any() == perhaps
-
-
 @pytest.mark.parametrize(("stops_at", "ends", "perhaps"), [(-7, 9, True), (-40, 9, False)])
 def test_one_that_stops_for_ego_and_is_not_recorded_further_may_have_been_held_up(
     stops_at, ends, perhaps
@@ -339,8 +317,8 @@ def test_one_that_stops_for_ego_and_waits_longer_may_have_been_held_up(brakes_s,
 
 @pytest.mark.parametrize(
     ("way", "conflict"),
-    [(3.0, True), (4.25, False), (5.0, False)],
-    ids=["brakes for ego", "hardly", "when ego is gone"],
+    [(3.0, "?"), (4.25, "F"), (5.0, "F")],
+    ids=["brakes gently", "hardly", "when ego is gone"],
 )
 def test_one_that_does_not_slow_down_for_ego_was_not_held_up(way, conflict):
     """Ego is there from 2 s on and gone 1 s before 3.4 s; the other one comes at 3.5 s.
@@ -349,7 +327,8 @@ def test_one_that_does_not_slow_down_for_ego_was_not_held_up(way, conflict):
     """
     places = np.array([-36.5, -11.5, -11.5 + way, -3])
     found = signals(NORTH, lambda t: np.interp(t, [0, 2.5, 3, 3.5], places), np.pi / 2)
-    assert values_of(found, "conflict_from_right").any() == conflict
+    assert not values_of(found, "conflict_from_right").any()
+    assert unknown_in(found, "conflict_from_right").any() == (conflict == "?")
 
 
 def turning_into_ego_s_road(driven):
@@ -372,18 +351,20 @@ def turning_into_ego_s_road(driven):
     return priority_signals(context_of(found, route=("1", "2", "3")))
 
 
-@pytest.mark.parametrize(("mps", "known"), [(6.0, False), (4.0, True)])
-def test_who_slows_down_no_more_than_its_bend_needs_may_do_so_for_that(mps, known):
+@pytest.mark.parametrize(
+    "speeds", [[10] * 4 + [6] * 12, [10, 10, 10, 6, 2, 0, 0, 0, 4, 8] + [10] * 6]
+)
+def test_who_slows_down_before_its_bend_may_do_so_for_that(speeds):
     """From the right it turns into ego's road by a bend of 12 m: at 6 m/s with 3 m/s² across.
 
     Ego is past the bend's end when the other one, did it keep its 10 m/s, would come there less
-    than a second later; it comes more than a second later. At 4 m/s it waits for ego.
+    than a second later; it comes more than a second later. Or it stops, by 8 m/s², and is 2 s late.
     """
-    driven = 55.0 + np.cumsum([0.0, *([5.0] * 4), *([mps / 2] * 11)])
-    signals = turning_into_ego_s_road(driven)
+    begin = 55.0 if min(speeds) else 60.0
+    signals = turning_into_ego_s_road(begin + 0.5 * np.cumsum([0.0, *speeds[:-1]]))
     side = "conflict_from_right"
-    assert values_of(signals, side).any() == known
-    assert unknown_in(signals, side).any() != known
+    assert not values_of(signals, side).any()
+    assert unknown_in(signals, side).any()
 
 
 @pytest.mark.parametrize(("at_1_s", "conflict"), [(-30, False), (-26, True)])
@@ -514,10 +495,10 @@ def _is_lit(drawn, way):
 
 
 @pytest.mark.parametrize(
-    ("y", "first"), [(lambda t: -3.9 + 0.1 * t, True), (lambda t: -3 + 10 * (t - 2.5), False)]
+    ("y", "first"), [(lambda t: -4.4 + 1.2 * t, True), (lambda t: -3 + 10 * (t - 2.5), False)]
 )
 def test_who_arrives_more_than_a_second_before_ego_arrives_first(y, first):
-    # Ego is in the junction from 2 s on; who creeps has been there all the time
+    # Ego is in the junction from 2 s on; who creeps from 0.5 s on, and ego runs into it
     found = signals(NORTH, y, np.pi / 2)
     assert values_of(found, "conflict_from_right").any()
     assert bool(values_of(found, "other_arrived_first").any()) == first
@@ -554,19 +535,6 @@ def test_who_comes_up_while_ego_is_held_up_in_the_junction_may_have_been_far(awa
     side = "conflict_from_right"
     assert values_of(told, side).any() or unknown_in(told, side).any()
     assert bool((values_of(told, side) & ~unknown_in(told, side)).any()) == known
-
-
-@pytest.mark.parametrize(("least_mps", "known"), [(0.0, True), (3.0, False)])
-def test_one_that_stops_for_ego_does_not_brake_for_its_bend(least_mps, known):
-    """From the right it turns into ego's road, and brakes by 8 m/s² before its bend of 12 m.
-
-    To a stand until ego is past the bend's end, which it reaches 2 s later; or to 3 m/s.
-    """
-    speeds = [10, 10, 10, 6, 2, *[least_mps] * 3, 4, 8, *[10] * 6]
-    driven = 60.0 + 0.5 * np.cumsum([0.0, *speeds[:-1]])
-    signals = turning_into_ego_s_road(driven)
-    side = "conflict_from_right"
-    assert (values_of(signals, side) & ~unknown_in(signals, side)).any() == known
 
 
 def with_a_tram(road, comes_s, way=EAST, heading=np.pi / 2, x=0.0):

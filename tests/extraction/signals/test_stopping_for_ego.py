@@ -83,14 +83,14 @@ def test_however_fast_ego_is(step_s, ego_mps):
 
 
 @pytest.mark.parametrize(
-    ("stood_s", "conflict"), [(1.5, "F"), (-0.5, "?"), (-2.0, "T")], ids=["long", "just", "not yet"]
+    ("stood_s", "conflict"), [(2.5, "F"), (-0.5, "?"), (-2.0, "T")], ids=["long", "just", "not yet"]
 )
 def test_who_stood_there_before_ego_came_near_may_be_in_a_queue(stood_s, conflict):
-    """It stands in ego's way from so long before on as ego, seen 2 s earlier, drives in at 8 s.
+    """It stands in ego's way from so long before on as ego, seen 1 s earlier, drives in at 8 s.
 
     Ego brakes no more than before; or the other one has just come to a stand.
     """
-    stands_s = {1.5: 4.5, -0.5: 7.0, -2.0: 9.0}[stood_s]
+    stands_s = {2.5: 4.5, -0.5: 7.5, -2.0: 9.0}[stood_s]
     other = (10 * (stands_s - 2.0) + 10.0, [(stands_s - 2.0, 10.0), (stands_s, 0.0)])
     assert told((92.0, [(0, 10)]), other) == conflict
 

@@ -12,8 +12,7 @@ from rulec.array_types import Flags
 from rulec.extraction.computed_once import once
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.bodies import gap_s
-from rulec.extraction.signals.map.right_of_way.conflicts import LONGEST_WAIT_S
-from rulec.extraction.signals.map.right_of_way.held_up import DRIVES_MPS
+from rulec.extraction.signals.map.right_of_way.conflicts import DRIVES_MPS, LONGEST_WAIT_S
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.scenario.recorded.route import lanelet_area
 

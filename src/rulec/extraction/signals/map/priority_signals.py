@@ -27,10 +27,11 @@ from rulec.extraction.signals.map.right_of_way.conflicts import (
     ONCOMING,
     Encounter,
     Passing,
+    drives_in,
     in_conflict,
+    is_train,
     side_of,
 )
-from rulec.extraction.signals.map.right_of_way.held_up import drives_in, is_train
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import (
     gives_way_to,
     is_settled,

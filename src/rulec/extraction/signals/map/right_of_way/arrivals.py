@@ -8,8 +8,7 @@ import numpy as np
 
 from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.map.right_of_way.conflicts import FROM_SIDES, Encounter
-from rulec.extraction.signals.map.right_of_way.held_up import DRIVES_MPS
+from rulec.extraction.signals.map.right_of_way.conflicts import DRIVES_MPS, FROM_SIDES, Encounter
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.trace.partly_known.partly_known_values import Truth

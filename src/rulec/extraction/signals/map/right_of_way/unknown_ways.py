@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags
 from rulec.extraction.computed_once import once, once_a_recording
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.map.right_of_way.conflicts import side_of
-from rulec.extraction.signals.map.right_of_way.held_up import drives_in
+from rulec.extraction.signals.map.right_of_way.conflicts import drives_in, side_of
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.scenario.recorded.reference_line import turn
