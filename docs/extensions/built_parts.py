@@ -12,7 +12,6 @@ from page import tables
 from sphinx.application import Sphinx
 
 import rulec
-from rulec.report.findings import code_registry
 from rulec.report.recordings import format_listing
 from rulec.report.text.markdown import table
 from tools.coverage_table import coverage_table
@@ -51,7 +50,6 @@ def looked_up() -> str:
 
 PARTS: Mapping[str, Callable[[], str]] = {
     "benchmarks": lambda: tables((ROOT / "docs" / "benchmarks.jsonl").read_bytes()),
-    "codes": code_registry.as_sections,
     "coverage": coverage_table,
     "first_maneuvers": first_maneuvers,
     "formats": lambda: format_listing.as_markdown(rulec.formats(), (), words=False),

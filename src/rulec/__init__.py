@@ -57,7 +57,6 @@ if TYPE_CHECKING:
     from rulec.diagnostics import Offer as Offer
     from rulec.diagnostics import RulecError as RulecError
     from rulec.diagnostics import SourceLocation as SourceLocation
-    from rulec.diagnostics.code import Code as Code
     from rulec.extraction.moment_search import DriveMoments as DriveMoments
     from rulec.extraction.recording_verdicts import DriveVerdict as DriveVerdict
     from rulec.extraction.recording_verdicts import RecordingVerdicts as RecordingVerdicts
@@ -111,6 +110,7 @@ if TYPE_CHECKING:
     from rulec.recordings.recording_format import RecordingSource as RecordingSource
     from rulec.recordings.road_map import RoadMap as RoadMap
     from rulec.recordings.tracks.track_table import recording_from_columns as recording_from_columns
+    from rulec.report.findings.code_registry import CodeExplanation as CodeExplanation
     from rulec.report.findings.verdict_finding import VerdictFinding as VerdictFinding
     from rulec.report.recordings.format_listing import ListedFormat as ListedFormat
     from rulec.report.text.listing import Listed as Listed

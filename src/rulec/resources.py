@@ -31,6 +31,12 @@ def rulebooks_folder() -> Path:
     return _folder("rulebooks")
 
 
+def codes_page() -> Path:
+    """The page that explains every code, part of the documentation."""
+    installed = _PACKAGE / "data" / "codes.md"
+    return installed if installed.is_file() else _PACKAGE.parent.parent / "docs" / "codes.md"
+
+
 def package_files() -> Iterator[tuple[str, os.stat_result]]:
     """The files of code, grammar and vocabularies in rulec, in a fixed order."""
     words = rulebooks_folder() / "vocabulary"

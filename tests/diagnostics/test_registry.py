@@ -1,16 +1,16 @@
-"""The registry of codes: each is defined once, beside its pass, used, and asked for by a test."""
+"""Codes: each is defined once, used, asked for by a test and explained by the page on codes."""
 
 import pickle
 import re
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
 from rulec.diagnostics.code import Code
-from rulec.report.findings.code_registry import all_codes, code_named, message_files
+from rulec.report.findings.code_registry import all_codes
+from rulec.resources import codes_page
 from support.source_modules import PACKAGE, source_modules
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -50,31 +50,31 @@ def test_each_code_stands_in_the_sources_once():
     assert sum(module.called.get("Code", 0) for module in source_modules()) == len(defined())
 
 
-def test_the_registry_has_what_is_defined():
+def test_the_page_explains_what_is_defined_in_order():
     assert list(CODES) == sorted(defined())
-    assert {path for _, path in defined().values()} <= set(message_files())
+
+
+def test_the_page_says_nothing_that_is_not_read():
+    sections = re.findall(r"^### .*", codes_page().read_text(encoding="utf-8"), re.MULTILINE)
+    assert sections == [f"### {code.code}: {code.title}" for code in CODES.values()]
+
+
+@pytest.mark.parametrize("code", CODES.values(), ids=CODES)
+def test_an_explanation_is_a_paragraph_and_two_examples(code):
+    blocks = re.sub(r"```.*?```", "```", code.markdown, flags=re.DOTALL).split("\n\n")
+    assert code.title
+    assert code.why
+    if code.kind == "circumstance":
+        assert len(blocks) == 1
+        assert (code.bad, code.good) == ("", "")
+    else:
+        assert blocks[2:] == ["```", "Corrected:", "```"]
+        assert code.bad != code.good
 
 
 def test_every_name_is_given_once():
     names = [name for name, _ in defined().values()]
     assert len(set(names)) == len(names)
-
-
-@pytest.mark.parametrize("text", CODES)
-def test_what_is_read_is_what_is_imported(text):
-    name, path = defined()[text]
-    module = path.relative_to(ROOT / "src").with_suffix("")
-    assert getattr(import_module(".".join(module.parts)), name) == CODES[text]
-
-
-@pytest.mark.parametrize("text", CODES)
-def test_a_code_is_found_by_itself(text):
-    assert code_named(text) == CODES[text]
-
-
-def test_what_is_no_code_is_not_found():
-    assert code_named("R9999") is None
-    assert code_named("title") is None
 
 
 @pytest.mark.parametrize("text", CODES)
@@ -89,7 +89,7 @@ def test_diagnostics_are_made_by_codes():
     assert made == {"diagnostics/code.py"}
 
 
-BROKEN = Code("R9999", title="something is broken", why="It is.")
+BROKEN = Code("R9999")
 
 
 def test_a_code_makes_diagnostics():

@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from rulec.recordings.recording import Recording
     from rulec.recordings.recording_files import is_recording, read_recording, read_recordings
     from rulec.recordings.recording_format import RecordingSource
-    from rulec.report.findings.code_registry import all_codes, code_named
+    from rulec.report.findings.code_registry import all_codes
     from rulec.report.pictures.drawing import picture_formats
     from rulec.report.recordings.format_listing import listed_formats, words_in_order
     from rulec.report.rulebooks import rule_page

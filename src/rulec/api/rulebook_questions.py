@@ -14,7 +14,6 @@ from rulec.api.rulebook_verbs import RulebookVerbs
 from rulec.api.session_settings import ignore
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.argument_kinds import finite
-from rulec.diagnostics.code import Code
 from rulec.resources import scenarios_folder
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
     from rulec.monitoring.verdict import Violation
     from rulec.recordings.recording_format import RecordingSource
+    from rulec.report.findings.code_registry import CodeExplanation
     from rulec.report.text.listing import Listed
 
 _NARROWEST = 10
@@ -44,7 +44,7 @@ class RulebookQuestions(RulebookVerbs):
     """The verbs of a session that answer questions about rulebooks."""
 
     @overload
-    def explain(self, subject: str) -> Code: ...
+    def explain(self, subject: str) -> CodeExplanation: ...
 
     @overload
     def explain(self, subject: Violation, trace: Trace | Drive, rules: Rules) -> Explanation: ...
@@ -54,7 +54,7 @@ class RulebookQuestions(RulebookVerbs):
         subject: str | Violation,
         trace: Trace | Drive | None = None,
         rules: Rules | None = None,
-    ) -> Code | Explanation:
+    ) -> CodeExplanation | Explanation:
         """Explain a code such as R0104, or a trace's violations by state.
 
         For a recorded ``Drive`` the margins include the numbers from which its signals were
@@ -63,7 +63,7 @@ class RulebookQuestions(RulebookVerbs):
         Raises KeyError for an unknown code.
         """
         if isinstance(subject, str):
-            code = lazy.code_named(subject.upper())
+            code = lazy.all_codes().get(subject.upper())
             if code is None:
                 raise KeyError(f"there is no code {subject}")
             return code

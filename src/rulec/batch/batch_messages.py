@@ -5,15 +5,7 @@ from __future__ import annotations
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.code import Code
 
-PROCESS_LOST = Code(
-    "R0708",
-    title="a process was killed before it had judged its file",
-    why="Files are judged in several processes, as set by `-j N`. One of them was killed, for "
-    "instance because memory ran out; another process judged the file again and was killed, too. "
-    "The other files are judged; for this one nothing more is known than was reported until then. "
-    "Use fewer processes.",
-    kind="circumstance",
-)
+PROCESS_LOST = Code("R0708")
 
 
 def process_lost(file: str, signal_number: int | None, deed: str = "judged") -> RulecError:

@@ -9,39 +9,11 @@ from rulec.diagnostics import Diagnostic, did_you_mean, named
 from rulec.diagnostics.code import Code
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 
-EXAMPLE_FAILED = Code(
-    "R0406",
-    title="an example has another outcome than it states",
-    why="An `accept` example is a trace that the rule must allow, a `reject` example one that it "
-    "must forbid. If the outcome differs, either the formula or the example does not express what "
-    "is meant. `rulec test` runs all examples.",
-    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n  require always not r(v)\n"
-    "  reject { b(v); ⟪l|r⟫(v); f(v) }\n}\n",
-    kind="compiled",
-)
+EXAMPLE_FAILED = Code("R0406")
 
-NOTHING_TO_RUN = Code(
-    "R0460",
-    title="no rule and no example matches `--rule`",
-    why="With `--rule PATTERN`, `rulec test` runs the examples whose `RULE` or `RULE/LABEL` "
-    "matches the pattern. If none matches, or those that match are not in force, nothing is tested "
-    "and nothing is covered. Each of several patterns has to match something.",
-    bad="rulec test esterle2019 --rule ⟪R7|R1⟫",
-    kind="command",
-)
+NOTHING_TO_RUN = Code("R0460")
 
-RULE_NOT_EXERCISED = Code(
-    "R0408",
-    title="a rule is not exercised by its examples",
-    why="Examples show that a formula is right only if they can fail in both ways: with a trace "
-    "that the rule must allow, and one that it must forbid. If a rule accepts all its examples, "
-    "they would also pass if it required nothing. `rulec test` reports this; with `--coverage` it "
-    "also reports what else the examples do not show.",
-    bad="rulebook example\nsignal wet, slow default false\nhard rule r {\n"
-    "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n"
-    "⟪|  reject { not wet; wet and not slow }\n⟫}\n",
-    kind="examples",
-)
+RULE_NOT_EXERCISED = Code("R0408")
 
 
 def unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagnostic:

@@ -8,18 +8,7 @@ from pathlib import Path
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.code import Code
 
-NO_MONITOR_IN_C = Code(
-    "R0750",
-    title="a monitor in C is not possible",
-    why="A monitor in C has a fixed size and tables with entries of 16 bits: a rule may have at "
-    "most 16,383 states and 6 variables, and all rules together 65,535 choices of objects, for as "
-    "many objects as `--objects` allows. It has one step: for a rulebook compiled for several "
-    "steps one must be chosen. A rulebook without rules has nothing to monitor. Types must be "
-    "those of the vocabulary.",
-    bad="rulec compile esterle2019 --emit c --objects lorry=2 -o build\n",
-    good="rulec compile esterle2019 --emit c --objects vehicle=2 -o build\n",
-    kind="command",
-)
+NO_MONITOR_IN_C = Code("R0750")
 
 
 def too_large(excess: str, way_out: str = "") -> RulecError:
@@ -31,22 +20,9 @@ def too_large(excess: str, way_out: str = "") -> RulecError:
     )
 
 
-NO_MONITOR_COMPILER = Code(
-    "R0751",
-    title="there is no compiler for the monitor",
-    why="Proving a monitor needs a compiler for C: the one named by the environment variable "
-    "`CC`, or `cc`. rulec does not include one. Writing a monitor needs none.",
-    kind="circumstance",
-)
+NO_MONITOR_COMPILER = Code("R0751")
 
-MONITOR_COMPILER_FAILED = Code(
-    "R0752",
-    title="compiling the monitor has failed",
-    why="The monitor is C99 and must compile without a warning. The message shows the command and "
-    "the compiler's output. If the compiler does not support C99, name another one in the "
-    "environment variable `CC`; otherwise please report the rulebook.",
-    kind="circumstance",
-)
+MONITOR_COMPILER_FAILED = Code("R0752")
 
 
 def no_compiler(command: str) -> RulecError:
@@ -80,15 +56,7 @@ def compiler_failed(command: str, output: str, status: int | None = None) -> Rul
     )
 
 
-MONITOR_DIFFERS = Code(
-    "R0753",
-    title="a monitor in C does not match its tables",
-    why="With `compile --emit c --prove`, rulec compiles the monitor and compares it with the "
-    "tables and the monitor in Python. If they differ, there is a bug in rulec or in the C "
-    "compiler; the rulebook is not at fault, and nothing is written. Please report the rulebook "
-    "and the compiler.",
-    kind="circumstance",
-)
+MONITOR_DIFFERS = Code("R0753")
 
 
 def differs(differences: Sequence[str]) -> RulecError:
@@ -100,16 +68,7 @@ def differs(differences: Sequence[str]) -> RulecError:
     )
 
 
-OTHERS_FILE = Code(
-    "R0755",
-    title="a monitor would replace a build file that is not its own",
-    why="A monitor comes with files whose names are the same for every program: a Makefile and "
-    "CMakeLists.txt, Cargo.toml, build.rs and src/lib.rs, or package.xml. Such a file is replaced "
-    "only if rulec has generated it for the same monitor.",
-    bad="mkdir build\necho all: > build/Makefile\nrulec compile esterle2019 --emit c -o build\n",
-    good="rulec compile esterle2019 --emit c -o build\n",
-    kind="command",
-)
+OTHERS_FILE = Code("R0755")
 
 
 def others_file(file: Path) -> RulecError:

@@ -18,16 +18,7 @@ from rulec.diagnostics.diagnostic import (
 )
 from rulec.version import __version__
 
-FAULT = Code(
-    "R0790",
-    title="a fault of rulec",
-    why="An exception inside rulec: a bug. It costs the part of the answer that is named, such as "
-    "one word of one drive with the rules that read it, one rule on one trace, one candidate or "
-    "one file: that is unknown or not judged, and everything else is answered. The exit status is "
-    "2. Please report the line, with the input; with RULEC_TRACEBACK=1 in the environment the "
-    "message has the whole traceback.",
-    kind="circumstance",
-)
+FAULT = Code("R0790")
 
 SAYS = "a fault of rulec"
 """What every message of a fault says, also in tables of findings."""

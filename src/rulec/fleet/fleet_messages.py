@@ -9,25 +9,9 @@ from rulec.diagnostics.code import Code, missing_package
 from rulec.files.read_files import what_reads
 from rulec.recordings.recording_messages import NET_MISSING
 
-CUT_DRIVE = Code(
-    "R0709",
-    title="a drive is split",
-    why="A drive must be judged as a whole, since a part of it has other violations. Engines "
-    "split tables anywhere, so the rows of one drive may be in two batches. Group the rows by the "
-    "columns that identify a recording or trace first: with Ray "
-    "`dataset.groupby('recording').map_groups(judge)`, with Spark "
-    "`frame.groupBy('recording').applyInArrow(judge, schema)`. `rulec fleet` does this itself.",
-    kind="circumstance",
-)
+CUT_DRIVE = Code("R0709")
 
-NO_DRIVES_TABLE = Code(
-    "R0710",
-    title="a table contains neither tracks nor traces",
-    why="A table of tracks has the columns `track`, `t`, `x` and `y`, and `recording` if there "
-    "are several; a table of traces has `trace`, `step`, `object` and `type`, and a column for "
-    "each name. Both are described in docs/fleet.md.",
-    kind="circumstance",
-)
+NO_DRIVES_TABLE = Code("R0710")
 
 
 _MOST_NAMED = 8
@@ -79,13 +63,7 @@ def _place(path: str) -> SourceLocation | None:
     return SourceLocation(path) if path else None
 
 
-NOT_COMPILED = Code(
-    "R0711",
-    title="a rulebook is not compiled",
-    why="Workers of other engines get a compiled rulebook, so that they need neither Spot nor a "
-    "parser and all judge in the same way. `rulec compile NAME --step S -o FOLDER` writes one.",
-    kind="circumstance",
-)
+NOT_COMPILED = Code("R0711")
 
 
 def not_compiled(reference: str) -> RulecError:
@@ -124,23 +102,9 @@ def other_types(path: str, why: str) -> RulecError:
     )
 
 
-OTHER_FLEET = Code(
-    "R0712",
-    title="a folder has findings of another fleet",
-    why="Findings in one folder are added up, so they must be of one rulebook, one version of "
-    "rulec, and the same thresholds, assumptions and map. A run in an existing folder continues "
-    "the earlier one: it may have more inputs than before, not fewer. Only one run at a time may "
-    "write to a folder.",
-    kind="circumstance",
-)
+OTHER_FLEET = Code("R0712")
 
-ENGINE_MISSING = Code(
-    "R0713",
-    title="an engine is not installed",
-    why="Ray and Spark are installed on request: `.venv/bin/python -m pip install -e '.[ray]'` in "
-    "the checkout, or `'.[spark]'`, which also needs Java 17. `--on local` needs neither.",
-    kind="circumstance",
-)
+ENGINE_MISSING = Code("R0713")
 
 
 def other_fleet(folder: Path, why: str) -> RulecError:

@@ -5,13 +5,7 @@ from __future__ import annotations
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.code import Code, missing_package
 
-LANGUAGE_SERVER_UNAVAILABLE = Code(
-    "R0760",
-    title="the language server needs a package that is not installed",
-    why="The language server needs the package `pygls`, which is installed on request: "
-    "`.venv/bin/python -m pip install -e '.[lsp]'` in the checkout.",
-    kind="circumstance",
-)
+LANGUAGE_SERVER_UNAVAILABLE = Code("R0760")
 
 
 def no_pygls() -> RulecError:

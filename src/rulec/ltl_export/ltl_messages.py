@@ -6,15 +6,7 @@ from rulec.diagnostics import RulecError
 from rulec.diagnostics.code import Code
 from rulec.rulebook.rulebook_model import Rule
 
-TOO_LONG_IN_LTL = Code(
-    "R0754",
-    title="a rule is too long in LTL",
-    why="Other tools' formulas have no bounds, so each bound is written out state by state, and "
-    "nested bounds multiply. A rule may have bounds of 10,000 steps and 2,000,000 characters of "
-    "text. Its automaton is equivalent and small: use `rulec compile` without `--emit ltl`.",
-    bad="rulec compile un-r79 --emit ltl --step 0.⟪0001|5⟫ -o build\n",
-    kind="command",
-)
+TOO_LONG_IN_LTL = Code("R0754")
 
 
 def too_long(rule: Rule, why: str) -> RulecError:

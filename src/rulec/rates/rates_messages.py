@@ -6,45 +6,11 @@ from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.code import Code, missing_package
 from rulec.files.read_files import what_reads
 
-JUDGED_OTHERWISE = Code(
-    "R0715",
-    title="findings were judged differently and cannot be added up",
-    why="A rate says how often a rule is violated, so all drives must be judged by the same rules "
-    "and version of rulec, with the same thresholds and assumptions. Different rulebooks can be "
-    "kept apart by `--by rulebook`.",
-    bad="""\
-echo '{"kind": "drive", "vehicle": "v", "rulec": "1.0", "duration_s": 60}' > found.jsonl
-echo '{"kind": "drive", "vehicle": "w", "rulec": "2.0", "duration_s": 60}' >> found.jsonl
-rulec rates found.jsonl""",
-    good="""\
-echo '{"kind": "drive", "vehicle": "v", "rulec": "2.0", "duration_s": 60}' > found.jsonl
-echo '{"kind": "drive", "vehicle": "w", "rulec": "2.0", "duration_s": 60}' >> found.jsonl
-rulec rates found.jsonl""",
-    kind="command",
-)
+JUDGED_OTHERWISE = Code("R0715")
 
-NO_FINDINGS = Code(
-    "R0716",
-    title="a file has no findings from which rates can be computed",
-    why="Rates are computed from the rows of drives and rules that `rulec fleet` writes, and "
-    "`rulec verify --exposure -o FILE` as JSON Lines, CSV or Parquet. Violations alone do not "
-    "show how long anybody drove. No drive may occur twice.",
-    bad="""\
-echo '{"rule": "stop_sign", "outcome": "violated"}' > found.jsonl
-rulec rates found.jsonl""",
-    good="""\
-echo '{"kind": "drive", "vehicle": "v", "outcome": "kept", "duration_s": 60}' > found.jsonl
-rulec rates found.jsonl""",
-    kind="command",
-)
+NO_FINDINGS = Code("R0716")
 
-RATES_UNAVAILABLE = Code(
-    "R0717",
-    title="intervals need a package that is not installed",
-    why="Exact intervals need the package `scipy`, which is installed on request: "
-    "`.venv/bin/python -m pip install -e '.[rates]'` in the checkout.",
-    kind="circumstance",
-)
+RATES_UNAVAILABLE = Code("R0717")
 
 
 def no_findings(file: str, why: str) -> RulecError:

@@ -17,45 +17,13 @@ from rulec.resource_limits import COMPILING, BudgetSpentError
 from rulec.rulebook.rulebook_model import Rule, provision_note
 from rulec.rulebook.rules.axiom_messages import contradictory_facts
 
-FAILED_CHECK = Code(
-    "R0402",
-    title="the compiled automaton failed its check against the formula",
-    why="After every compilation the automaton is compared with its formula. If they differ, the "
-    "mistake is in Spot or in rulec, not in the rulebook. Please report the rule.",
-    kind="circumstance",
-)
+FAILED_CHECK = Code("R0402")
 
-COMPILERS_DISAGREE = Code(
-    "R0417",
-    title="two compilers produce different tables for a rule",
-    why="If Spot is installed, `rulec compile` translates each rule twice: by Spot, and by "
-    "rulec's own compiler, which shares no code with it from formula to automaton. The minimal "
-    "table is unique, so both must produce the same one. If they differ, one of them has a bug; "
-    "the rulebook is not at fault, and nothing is written. Please report the rule.",
-    kind="circumstance",
-)
+COMPILERS_DISAGREE = Code("R0417")
 
-SPOT_MISSING = Code(
-    "R0403",
-    title="Spot is required but not installed",
-    why="Without Spot, rulec translates most formulas itself: those decided by a beginning of a "
-    "trace, those about what recurs for ever, and combinations of these by `and`, `or` and `not`. "
-    "Only nested obligations without end (if traces do not end), and a past that depends on the "
-    "future, such as `once always p`, need Spot. With `RULEC_COMPILER=spot` everything does. Spot "
-    "is available as a package for Linux on x86-64 (`pip install spottl`) and for other systems "
-    "(`conda install -c conda-forge spot`). A rulebook compiled elsewhere runs without Spot.",
-    kind="circumstance",
-)
+SPOT_MISSING = Code("R0403")
 
-SPOT_NOT_CONFINED = Code(
-    "R0415",
-    title="the compiling process cannot be confined",
-    why="Spot runs in a process that cannot write files, open connections or start programs: "
-    "Linux prevents this by Landlock (from 5.13 on) and by seccomp. On other systems and older "
-    "kernels it runs without this confinement, unless the environment variable "
-    "`RULEC_REQUIRE_CONFINED` demands it.",
-    kind="circumstance",
-)
+SPOT_NOT_CONFINED = Code("R0415")
 
 _GET_SPOT = (
     "`pip install spottl` on Linux x86-64 with glibc 2.34 or later, "

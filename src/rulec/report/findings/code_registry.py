@@ -1,130 +1,117 @@
-"""All diagnostic codes, from the modules that define them, explained as text and Markdown."""
+"""All diagnostic codes, as the page on codes explains them."""
 
 from __future__ import annotations
 
-import ast
-import os
-from collections.abc import Iterator
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from textwrap import indent
+from typing import Literal, TypeAlias
 
-from rulec.diagnostics.code import Code, ExampleKind
 from rulec.report.text.terminal_text import broken
+from rulec.resources import codes_page
+from rulec.value_display import short_repr
 
-STAGES = (
-    "Syntax",
-    "Names",
-    "Types and meaning",
-    "Compiling and examples",
-    "Traces",
-    "Scenarios and graphs",
-    "Files",
-    "Analysis",
+ExampleKind: TypeAlias = Literal[
+    "rules",
+    "compiled",
+    "analyzed",
+    "examples",
+    "maneuvers",
+    "trace",
+    "scenario",
+    "command",
+    "python",
+    "circumstance",
+]
+"""Kinds of examples, by how they are run.
+
+``rules``: a rulebook or a vocabulary to check. ``compiled``: a rulebook to compile. ``analyzed``: a
+rulebook to analyze. ``examples``: a rulebook whose examples are run. ``maneuvers``: a rulebook by
+which the maneuvers of scenario s1 are judged. ``trace``: a line to judge by ``esterle2019``.
+``scenario``: a file to build the graph of. ``command``: lines for a POSIX shell in an empty folder.
+``python``: a program. ``circumstance``: no input causes it, so there is no example.
+"""
+
+_KINDS: Mapping[str, ExampleKind] = {
+    "Wrong (to check)": "rules",
+    "Wrong (to compile)": "compiled",
+    "Wrong (to analyze)": "analyzed",
+    "Wrong (to test)": "examples",
+    "Wrong (to judge the maneuvers of `s1` by)": "maneuvers",
+    "Wrong (a trace, to judge by `esterle2019`)": "trace",
+    "Wrong (a scenario, to build the graph of)": "scenario",
+    "Wrong (in a shell)": "command",
+    "Wrong (from Python)": "python",
+}
+"""The headings of wrong examples."""
+
+_SECTION = re.compile(
+    r"^### (?P<code>R\d{4}): (?P<title>[^\n]+)\n\n(?P<text>.*?)\n(?=\n##+ R\d|\Z)",
+    re.MULTILINE | re.DOTALL,
 )
-"""The stages that report codes, by the hundreds digit of the codes, from 1 on."""
+_EXAMPLE = re.compile(
+    r"^(?P<head>\w[^\n]*):\n\n```\w+ \w+\n(?P<text>.*?)\n```$", re.MULTILINE | re.DOTALL
+)
 
-_PACKAGE = Path(__file__).parents[2]
+
+@dataclass(frozen=True, slots=True)
+class CodeExplanation:
+    """What the page says about a code.
+
+    ``title``: one line. ``why``: its meaning and what to do, in a paragraph. ``bad``: a small
+    example that causes this code and no other. ``good``: the same example, corrected. ``markdown``
+    is all of this without the title.
+    """
+
+    __repr__ = short_repr
+
+    code: str
+    title: str
+    why: str
+    kind: ExampleKind
+    bad: str
+    good: str
+    markdown: str
+
+    def as_text(self, width: int = 80) -> str:
+        """The explanation for a terminal; its examples keep their lines, however wide."""
+        title = f"{self.code}: {self.title}"
+        return "\n\n".join(["\n".join(broken(title, width)), self.as_plain_text(width)])
+
+    def as_plain_text(self, width: int = 80) -> str:
+        """The explanation without its title, for a format that has that elsewhere."""
+        examples = [
+            f"{example['head']}:\n\n{indent(example['text'], '    ')}"
+            for example in _EXAMPLE.finditer(self.markdown)
+        ]
+        return "\n\n".join(["\n".join(broken(self.why, width)), *examples])
 
 
 @cache
-def all_codes() -> dict[str, Code]:
+def all_codes() -> dict[str, CodeExplanation]:
     """Every code by its text, in ascending order."""
-    codes = [code for path in message_files() for code in _defined_in(path)]
-    return {code.code: code for code in sorted(codes, key=lambda code: code.code)}
-
-
-def code_named(text: str) -> Code | None:
-    """The code with a text such as ``R0104``; None if there is none."""
-    for path in message_files():
-        if f'"{text}"' in path.read_text(encoding="utf-8"):
-            return next((code for code in _defined_in(path) if code.code == text), None)
-    return None
-
-
-def codes_of_stage(stage: str) -> list[Code]:
-    """The codes of a stage, in ascending order."""
-    prefix = f"R0{STAGES.index(stage) + 1}"
-    return [code for text, code in all_codes().items() if text.startswith(prefix)]
-
-
-def message_files() -> Iterator[Path]:
-    """The modules that define codes: ``..._messages.py``, and those in folders ``messages``."""
-    for folder, folders, files in os.walk(_PACKAGE):
-        folders.sort()
-        ending = ".py" if folder.endswith(f"{os.sep}messages") else "_messages.py"
-        yield from (Path(folder, name) for name in sorted(files) if name.endswith(ending))
-
-
-def _defined_in(path: Path) -> list[Code]:
-    """The codes defined in a module, without importing it.
-
-    Codes are defined before anything that uses them, and only from texts. Importing the modules
-    would load parser, compiler and scenarios: `rulec explain --all` took three times as long.
-    """
-    text = path.read_text(encoding="utf-8")
-    last = text.rfind(" = Code(\n")
-    if last < 0:
-        return []
-    beginning = ast.parse(text[: text.index("\n)\n", last) + 3])
-    assignments = [node for node in beginning.body if isinstance(node, ast.Assign)]
-    names: dict[str, object] = {"Code": Code}
-    exec(compile(ast.Module([*assignments], []), str(path), "exec"), names)
-    return [value for value in names.values() if isinstance(value, Code)]
-
-
-_KINDS: dict[ExampleKind, tuple[str, str]] = {
-    "rules": ("to check", "rulec"),
-    "compiled": ("to compile", "rulec"),
-    "analyzed": ("to analyze", "rulec"),
-    "examples": ("to test", "rulec"),
-    "maneuvers": ("to judge the maneuvers of `s1` by", "rulec"),
-    "trace": ("a trace, to judge by `esterle2019`", "json"),
-    "scenario": ("a scenario, to build the graph of", "toml"),
-    "command": ("in a shell", "sh"),
-    "python": ("from Python", "python"),
-}
-"""What is done with an example, and its language."""
-
-
-def as_text(code: Code, width: int = 80) -> str:
-    """An explanation for a terminal; its examples keep their lines, however wide."""
-    parts = ["\n".join(broken(text, width)) for text in (f"{code.code}: {code.title}", code.why)]
-    for head, example in _examples(code):
-        parts.append(f"{head}:\n\n{indent(example, '    ')}")
-    return "\n\n".join(parts)
-
-
-def as_plain_text(code: Code) -> str:
-    """The explanation without its title, for a format that has that elsewhere."""
-    return as_text(code).partition("\n\n")[2]
-
-
-def as_markdown(code: Code) -> str:
-    """The explanation without its title, in Markdown."""
-    parts = ["\n".join(broken(code.why, 100, at_hyphens=False))]
-    for head, example in _examples(code):
-        # The word after the language marks samples of mistakes, so that they are not read as
-        # correct ones.
-        parts.append(
-            f"{head}:\n\n```{_KINDS[code.kind][1]} {head.split()[0].lower()}\n{example}\n```"
-        )
-    return "\n\n".join(parts)
+    page = codes_page().read_text(encoding="utf-8")
+    return {found["code"]: _explanation(found) for found in _SECTION.finditer(page)}
 
 
 def as_sections() -> str:
     """All explanations in Markdown, a section a stage."""
-    parts = []
-    for number, stage in enumerate(STAGES, 1):
-        parts.append(f"## R0{number}: {stage.lower()}\n")
-        parts += [
-            f"### {code.code}: {code.title}\n\n{as_markdown(code)}\n"
-            for code in codes_of_stage(stage)
-        ]
-    return "\n".join(parts).rstrip("\n")
+    page = codes_page().read_text(encoding="utf-8")
+    return page[page.index("\n## ") + 1 :].rstrip("\n")
 
 
-def _examples(code: Code) -> Iterator[tuple[str, str]]:
-    if code.kind != "circumstance":
-        yield f"Wrong ({_KINDS[code.kind][0]})", code.bad.rstrip("\n")
-        yield "Corrected", code.good.rstrip("\n")
+def _explanation(found: re.Match[str]) -> CodeExplanation:
+    markdown = found["text"]
+    examples = [(example["head"], example["text"]) for example in _EXAMPLE.finditer(markdown)]
+    (head, bad), (_, good) = examples or [("", ""), ("", "")]
+    return CodeExplanation(
+        code=found["code"],
+        title=found["title"],
+        why=markdown.partition("\n\n")[0].replace("\n", " "),
+        kind=_KINDS[head] if head else "circumstance",
+        bad=bad,
+        good=good,
+        markdown=markdown,
+    )

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Literal
 
 from rulec.diagnostics import Diagnostic
-from rulec.diagnostics.code import Code, ExampleKind
+from rulec.report.findings.code_registry import CodeExplanation, ExampleKind
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 
 
@@ -64,6 +64,6 @@ def as_json(diagnostics: Iterable[Diagnostic]) -> str:
     return as_indented([filled(FindingData, diagnostic) for diagnostic in diagnostics])
 
 
-def codes_as_json(codes: Iterable[Code]) -> str:
+def codes_as_json(codes: Iterable[CodeExplanation]) -> str:
     """Write a list with an object for each code."""
     return as_indented([filled(CodeData, code) for code in codes])

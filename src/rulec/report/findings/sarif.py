@@ -14,8 +14,7 @@ from typing import IO, TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from rulec.diagnostics import Diagnostic, Fix, SourceLocation
-from rulec.diagnostics.code import Code
-from rulec.report.findings.code_registry import all_codes, as_markdown, as_plain_text
+from rulec.report.findings.code_registry import CodeExplanation, all_codes
 from rulec.rulebook.rulebook_model import cited_law
 from rulec.version import __version__
 
@@ -109,12 +108,12 @@ class SarifWriter:
         self._run.close(complete=self._complete, toolExecutionNotifications=self._notes)
 
 
-def _code(code: Code) -> dict[str, Any]:
+def _code(code: CodeExplanation) -> dict[str, Any]:
     return {
         "id": code.code,
         "shortDescription": {"text": code.title},
         "fullDescription": {"text": code.why},
-        "help": {"text": as_plain_text(code), "markdown": as_markdown(code)},
+        "help": {"text": code.as_plain_text(), "markdown": code.markdown},
     }
 
 

@@ -33,44 +33,15 @@ from rulec.vocabulary.dimensions import (
     Dimension,
 )
 
-OTHERWISE_DECLARED = Code(
-    "R0328",
-    title="a definition does not fit the word that it defines",
-    why="A declared signal may be defined; where a source does not tell it, the definition does. "
-    "It is about the same objects as the signal, and looks at the present and the past.",
-    bad="rulebook example\nsignal rain, wet\ndefine wet = ⟪eventually|once⟫ rain\n"
-    "hard rule r { require never wet }\n",
-)
+OTHERWISE_DECLARED = Code("R0328")
 
 
-SENSELESS_BOUND = Code(
-    "R0317",
-    title="a time bound makes no sense",
-    why="Bounds are fixed times or whole numbers of steps: `[<= 3 s]`, `[>= 2 steps]`, `[1 s .. 4 "
-    "s]`. `next` and `previously` refer to one instant: `next[2 steps]`.",
-    bad="rulebook example\nsignal wet\nhard rule r { require eventually[4 s .. 1 s] wet }\n",
-    good="rulebook example\nsignal wet\nhard rule r { require eventually[1 s .. 4 s] wet }\n",
-)
+SENSELESS_BOUND = Code("R0317")
 
 
-CIRCULAR_DEFINITION = Code(
-    "R0316",
-    title="a definition or a parameter refers to itself",
-    why="A definition replaces its name, so it cannot contain itself, not even indirectly.",
-    bad="rulebook example\nsignal wet\ndefine slippery = wet⟪ or slippery|⟫\n"
-    "hard rule r { require never slippery }\n",
-)
+CIRCULAR_DEFINITION = Code("R0316")
 
-NO_SINGLE_VALUE = Code(
-    "R0320",
-    title="a parameter has no value on the day in question, or two",
-    why="Values can be dated by `in force from … until …`. The day is the requested one, else "
-    "that of the rulebook's `law` line, else today. On that day there must be exactly one value.",
-    bad='rulebook example\nlaw "Highway Code" as of 2019-01-01\nquantity gap in m default 9\n'
-    "param least : length = 1⟪| m in force until 2020-04-27\n"
-    "param least : length = 1⟫.5 m in force from 2020-04-28\n"
-    "hard rule r { require always gap >= least }\n",
-)
+NO_SINGLE_VALUE = Code("R0320")
 
 
 def takes_no_object(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:

@@ -20,43 +20,13 @@ from rulec.vocabulary import Enumeration
 from rulec.vocabulary.dimensions import TIME, Dimension
 from rulec.vocabulary.units import hour_in_another_language
 
-POINT_OF_THOUSANDS = Code(
-    "R0365",
-    title="a number may be meant in thousands",
-    why="A point separates the decimals of a number: `3.500 kg` is three and a half kilograms. In "
-    "languages that use the point for thousands, such as German or Danish, it would be 3500. "
-    "Three decimals ending in 0 are rarely written for anything else. Remove the 0 or the point "
-    "to make it clear.",
-    bad="rulebook example\nquantity mass in kg default 0\n"
-    "hard rule r { require always mass <= ⟪3.500|3500⟫ kg }\n",
-)
+POINT_OF_THOUSANDS = Code("R0365")
 
-OPERATOR_BEFORE_THEN = Code(
-    "R0311",
-    title="an operator applies to a phase before `then`, not to the sequence",
-    why="Operators such as `never` bind tightest, so `never a then b` means `(never a) then b`: a "
-    "phase without `a`, then `b`. Put a whole sequence in parentheses.",
-    bad="rulebook example\nsignal a, b\nhard rule r { require never ⟪|(⟫a then b⟪|)⟫ }\n",
-)
+OPERATOR_BEFORE_THEN = Code("R0311")
 
-DIVIDED_BY_ZERO = Code(
-    "R0314",
-    title="a number is divided by 0",
-    why="Nothing can be divided by 0. Where a number that changes may be 0, comparisons of what is "
-    "divided by it are unknown.",
-    bad="rulebook example\nquantity gap in m default 100\n"
-    "hard rule r { require always gap / ⟪0|2⟫ >= 2 m }\n",
-)
+DIVIDED_BY_ZERO = Code("R0314")
 
-MISPLACED_TEMPORAL_OPERATOR = Code(
-    "R0319",
-    title="a temporal operator is inside a count, a parameter or a fact",
-    why="The words `some`, `every` and `count` range over the objects of one moment, and a "
-    "parameter is a number at one moment. To follow one object over time, use a variable of the "
-    "rule.",
-    bad="rulebook example\ntype car\nsignal near(c: car) default false\n"
-    "hard rule r { require ⟪|always ⟫every c: car (⟪always |⟫not near(c)) }\n",
-)
+MISPLACED_TEMPORAL_OPERATOR = Code("R0319")
 
 
 def kind_of(dimension: Dimension | None) -> str:

@@ -24,91 +24,21 @@ from rulec.syntax.messages.mismatch import FORMULA_TOO_DEEP
 CROWD = 30
 """The number of objects around in dense traffic."""
 
-UNUSED_VARIABLE = Code(
-    "R0207",
-    title="a variable is not used",
-    why="The rule is judged for every choice of objects for its variables. A variable that the "
-    "formula does not use multiplies the choices without changing any verdict, except that the "
-    "rule is not judged at all if there is no such object.",
-    bad="rulebook example\nuse paper\n"
-    "hard rule r (v: vehicle⟪, p: pedestrian|⟫) { require always not r(v) }\n",
-)
+UNUSED_VARIABLE = Code("R0207")
 
-EXCEPTION_BEHIND_ANOTHER = Code(
-    "R0364",
-    title="an exception directly follows another one",
-    why="Each `unless` of a rule applies by itself, so `unless signposted unless night` exempts "
-    "at night, signposted or not. It may be misread as an exception to the exception, which would "
-    "be one formula: `unless signposted and not night`. If either is meant to exempt, put each on "
-    "its own line, as `rulec fmt` does.",
-    bad="rulebook example\nsignal turning, signposted, night default false\nhard rule r {\n"
-    "  require never turning\n  unless signposted ⟪unless|and not⟫ night\n}\n",
-)
+EXCEPTION_BEHIND_ANOTHER = Code("R0364")
 
-UNUSED_CONSTANT = Code(
-    "R0208",
-    title="an option, a parameter or a definition is not used",
-    why="No rule, parameter or definition of the rulebook uses it, so it has no effect.",
-    bad="rulebook example\nsignal wet\noption strict = on\n"
-    "hard rule r { require ⟪never wet|always (strict implies not wet)⟫ }\n",
-)
+UNUSED_CONSTANT = Code("R0208")
 
-MANY_CHOICES = Code(
-    "R0326",
-    title="a rule has very many choices of objects",
-    why="A rule is judged for every choice of different objects for its variables, and each "
-    "variable multiplies the choices: with thirty objects, five variables have 17 million. Often "
-    "the values of some objects show that the others do not matter; otherwise a trace is not "
-    "judged, because of a limit (docs/limits.md). A rule about pairs usually expresses most of "
-    "what a rule about five objects does; `some`, `every` and `count` cover many objects without "
-    "choosing them.",
-    bad="rulebook example\ntype car\nsignal close(a: car, b: car) default false\n"
-    "hard rule r (a: car, b: car⟪, c: car, d: car, e: car) {\n"
-    "  require never (close(a, b) and close(b, c) and close(c, d) and close(d, e))\n"
-    "|) { require never close(a, b) ⟫}\n",
-)
+MANY_CHOICES = Code("R0326")
 
-UNKNOWN_PRIORITY = Code(
-    "R0215",
-    title="a level of priority is unknown",
-    why="The level of a rule, as in `in legal`, must be one of the levels ordered by the "
-    "`priority` lines of the rulebook or of those that it extends.",
-    bad="rulebook example\npriority safety > legal\nsignal wet\n"
-    "hard rule r in ⟪lawful|legal⟫ { require never wet }\n",
-)
+UNKNOWN_PRIORITY = Code("R0215")
 
-UNFITTING_SCOPE = Code(
-    "R0318",
-    title="an exception's scope does not fit the rule",
-    why="An exception says when a rule does not apply. `at start`, `at some point`, `at end` and "
-    "`throughout` (which also holds if none is written) mean the time during which the rule could "
-    "be violated, which only a rule that begins with `never` or `always` has. Other rules can "
-    "have exceptions that hold `initially`, in the first state. `throughout` does not go together "
-    "with bounds of `then`, such as `then[<= 2 s]`. Where no scope fits, write two rules: one for "
-    "when the exception holds, and one for when it does not.",
-    bad="rulebook example\nsignal wet, fog\n"
-    "hard rule r { require eventually wet unless fog ⟪throughout|initially⟫ }\n",
-)
+UNFITTING_SCOPE = Code("R0318")
 
-NOT_ABOVE_ZERO = Code(
-    "R0322",
-    title="a weight or a step is not greater than 0",
-    why="A weight says how much a rule counts compared to others of its level; a step is the time "
-    "between the states of examples.",
-    bad="rulebook example\nsignal wet\nsoft rule r weight ⟪0|1⟫ { require never wet }\n",
-)
+NOT_ABOVE_ZERO = Code("R0322")
 
-NOT_A_MULTIPLE = Code(
-    "R0407",
-    title="a bound is not a multiple of the step",
-    why="A bound in seconds is about the states that a trace has: at steps of 1 s, `within 1.5 s` "
-    "is within one state. The examples of this rule, whose states are a step of the rulebook "
-    "apart, therefore judge it by another bound than the one that is written. Choose a bound that "
-    "is a multiple of the step, or a finer step.",
-    bad="rulebook example\n⟪|step 0.5 s\n⟫signal wet default false\nhard rule r {\n"
-    "  require always (wet implies eventually[<= 1.5 s] not wet)\n  accept { not wet }\n}\n",
-    kind="compiled",
-)
+NOT_A_MULTIPLE = Code("R0407")
 
 
 def over_limit(limit: Limit, part: str, name: tree.Name) -> Diagnostic:

@@ -8,42 +8,11 @@ from rulec.diagnostics.ways_out import offering
 from rulec.rulebook.elaborate.elaboration_messages import parentheses_behind, short
 from rulec.syntax import tree
 
-FIRST_STATE_ONLY = Code(
-    "R0360",
-    title="a rule requires something only in the first state",
-    why="Without a temporal operator such as `always` or `never`, a formula is only about the "
-    "first state of a trace: a vehicle that starts slowly satisfies `require speed <= limit`. "
-    "The same holds for a condition outside of it: `require red_light implies eventually halted` "
-    "is only about a light that is red as the trace begins. Operators of the past do not help, "
-    "since the first state has no past. `rulec check --fix` puts `always`, or `never` in place "
-    "of `not`, before it. If you mean the first state, write `always (previously true or p)`, "
-    "which requires `p` only in the state that has none before it.",
-    bad="rulebook example\nquantity speed in km/h default 0\n"
-    "hard rule r { require ⟪|always (⟫speed <= 50 km/h⟪|)⟫ }\n",
-)
+FIRST_STATE_ONLY = Code("R0360")
 
-NARROW_OPERATOR = Code(
-    "R0361",
-    title="a temporal operator applies to less than what follows it",
-    why="The operators `never`, `always` and `eventually` bind tighter than `and`, `or` and "
-    "`implies`: `never a and b` means `(never a) and b`, which requires `b` only in the first "
-    "state. `rulec check --fix` puts what follows in parentheses, except before `until` and its "
-    "kin: what is forbidden until a sign is written `not a until b`, for `never (a until b)` would "
-    "forbid the sign itself. If you mean the other reading, put the parentheses around the "
-    "operator, as `rulec fmt` does, to make it visible.",
-    bad="rulebook example\nsignal a, b\nhard rule r { require always ⟪|(⟫a implies b⟪|)⟫ }\n",
-)
+NARROW_OPERATOR = Code("R0361")
 
-TWO_READINGS = Code(
-    "R0362",
-    title="an `and` or `or` beside `until` can be read in two ways",
-    why="The operators `until`, `release`, `weak until`, `strong release` and `since` bind "
-    "tighter than `and`, `or` and `xor`: `a until b and c` means `(a until b) and c`, which "
-    "requires `c` immediately, not when `b` occurs. Many read it the other way. Parentheses "
-    "around one part or the other make the meaning clear; the message shows both.",
-    bad="rulebook example\nsignal a, b, c default false\n"
-    "hard rule r { require always (a implies b until ⟪|(⟫c and not a)⟪|)⟫ }\n",
-)
+TWO_READINGS = Code("R0362")
 
 
 def first_state_only(node: tree.Formula, asked_once: tree.Formula, *, alone: bool) -> Diagnostic:

@@ -13,38 +13,11 @@ from rulec.diagnostics.ways_out import line_left_out, line_of, offering, write
 if TYPE_CHECKING:  # a check that is recalled does not load the parser
     from rulec.syntax import tree
 
-WRONG_KIND_OF_FILE = Code(
-    "R0206",
-    title="a file has another kind or name than expected",
-    why="A rulebook has rules and can be compiled; a vocabulary has declarations and can be used. "
-    "A vocabulary `NAME` is found in a file `NAME.rules` that begins with `vocabulary NAME`.",
-    bad="echo 'vocabulary town { signal fog }' > town.rules\nrulec compile ./town.rules -o build",
-    good="echo 'vocabulary town { signal fog }' > town.rules\n"
-    "echo 'rulebook city use town hard rule r { require never fog }' > city.rules\n"
-    "rulec compile ./city.rules -o build",
-    kind="command",
-)
+WRONG_KIND_OF_FILE = Code("R0206")
 
-EXTENDS_CIRCLE = Code(
-    "R0213",
-    title="rulebooks extend each other in a circle",
-    why="Each rulebook builds upon a more general one, up to one that extends no other. A cycle "
-    "is not possible.",
-    bad="printf 'rulebook a\\nextends b\\n' > a.rules\n"
-    "printf 'rulebook b\\⟪nextends a|nsignal p\\nhard rule r { require always p }⟫\\n' "
-    "> b.rules\nrulec check a.rules\n",
-    kind="command",
-)
+EXTENDS_CIRCLE = Code("R0213")
 
-NAME_NOT_FOUND = Code(
-    "R0703",
-    title="a name was not found on the search path",
-    why="There is no rulebook or vocabulary of this name beside the file that refers to it or "
-    "among those that ship with rulec (`rulec list`). A rulebook in a folder of its own name, such "
-    "as `mine/mine.rules`, may also extend those beside that folder. To refer to a file, give its "
-    "path, such as `./mine.rules`.",
-    bad="rulebook example\nuse ⟪papr|paper⟫\nhard rule r { require never CONGESTED }\n",
-)
+NAME_NOT_FOUND = Code("R0703")
 
 
 def extends_circle(line: tree.ExtendsLine, way: Sequence[tree.File]) -> Diagnostic:

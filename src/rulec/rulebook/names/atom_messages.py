@@ -25,77 +25,23 @@ from rulec.syntax.messages.in_comparisons import ABSOLUTE, NO_ABSOLUTE_VALUE
 from rulec.vocabulary import Enumeration, Quantity, Signal
 from rulec.vocabulary.units import parse_unit
 
-UNKNOWN_NAME = Code(
-    "R0202",
-    title="a name in a formula or a state is unknown",
-    why="Formulas consist of signals and values of enumerations. They must be declared in the "
-    "rulebook or in a vocabulary that it uses.",
-    bad="rulebook example\nuse paper\nhard rule r { require always not ⟪CONGESTD|CONGESTED⟫ }\n",
-)
+UNKNOWN_NAME = Code("R0202")
 
-UNKNOWN_VARIABLE = Code(
-    "R0203",
-    title="a variable is unknown",
-    why="The variables of a rule are declared in parentheses after its name, each with a type.",
-    bad="rulebook example\nuse paper\n"
-    "hard rule r (v: vehicle) { require ⟪always not r(w) and b(v|never (r(v) and "
-    "next b(v)⟫) }\n",
-)
+UNKNOWN_VARIABLE = Code("R0203")
 
 
-WRONG_ARITY = Code(
-    "R0301",
-    title="an atom has the wrong number of arguments",
-    why="A signal or an enumeration is about the world, or about as many objects as its "
-    "declaration has parameters. In a formula it needs that many variables.",
-    bad="rulebook example\nuse paper\n"
-    "hard rule r (v: vehicle) { require always (f⟪|(v)⟫ or CONGESTED) }\n",
-)
+WRONG_ARITY = Code("R0301")
 
-WRONG_ARGUMENT_TYPE = Code(
-    "R0302",
-    title="an argument is of the wrong type",
-    why="A declaration for one type applies to its subtypes, but not to other objects.",
-    bad="rulebook example\ntype car\ntype pedestrian\nsignal braking(c: car)\n"
-    "hard rule r (⟪p: pedestrian|c: car⟫) { require never braking(⟪p|c⟫) }\n",
-)
+WRONG_ARGUMENT_TYPE = Code("R0302")
 
-NOT_BOOLEAN = Code(
-    "R0303",
-    title="a name is neither true nor false",
-    why="Formulas consist of what is true or false in a state: signals, and values of "
-    "enumerations. Quantities, types, objects and whole enumerations are neither.",
-    bad="rulebook example\nsurface is one of road, crossing\n"
-    "hard rule r { require never ⟪surface|crossing⟫ }\n",
-)
+NOT_BOOLEAN = Code("R0303")
 
-AMBIGUOUS_NAME = Code(
-    "R0309",
-    title="a name can be read in two ways",
-    why="The name `b_v` is short for `b(v)`. If the underscores of a name can be read in two "
-    "ways, use parentheses.",
-    bad="rulebook example\ntype t\nsignal a(o: t), a_b(o: t)\n"
-    "hard rule r (b_c: t, c: t) { require ⟪a_b_c|always (a_b(c)⟫ and a(c) and a(b_c)⟪|)⟫ }\n",
-)
+AMBIGUOUS_NAME = Code("R0309")
 
 
-MIXED_DIMENSIONS = Code(
-    "R0312",
-    title="numbers of two kinds are combined",
-    why="A length cannot be compared with a speed, nor a number without a unit with either. Only "
-    "a bare 0 fits every kind.",
-    bad="rulebook example\nquantity speed in km/h default 0\n"
-    "hard rule r { require always speed <= 50 ⟪|km/h ⟫}\n",
-)
+MIXED_DIMENSIONS = Code("R0312")
 
-NUMBER_OR_FORMULA = Code(
-    "R0313",
-    title="a number is used where a truth value is needed, or the other way round",
-    why="Formulas are made of what is true or false: signals, values and comparisons. Comparisons "
-    "are made of numbers: quantities, parameters, counts, and numbers with their units.",
-    bad="rulebook example\nquantity speed in km/h default 0\n"
-    "hard rule r { require always not speed ⟪|> 0 ⟫}\n",
-)
+NUMBER_OR_FORMULA = Code("R0313")
 
 _ALIKE = 0.75
 """The least similarity of a misspelt name; less similar ones are usually other words."""

@@ -14,90 +14,23 @@ from rulec.syntax.messages.larger_edits import name_left_out
 from rulec.syntax.messages.literals import hours_meant, how_hours_are_written
 from rulec.vocabulary.units import known_unit_names, unit_in_another_language, unit_refusal
 
-UNKNOWN_TYPE = Code(
-    "R0201",
-    title="a type is unknown",
-    why="A type must be declared in the rulebook or in a vocabulary that it uses. Names are "
-    "case-sensitive.",
-    bad="rulebook example\nuse paper\nhard rule r (v: vehicel) { require always not r(v) }\n",
-    good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(v) }\n",
-)
+UNKNOWN_TYPE = Code("R0201")
 
-DECLARED_TWICE = Code(
-    "R0204",
-    title="a name is declared twice",
-    why="Types, signals, quantities, enumerations and their values share one namespace with those "
-    "of the vocabularies in use. Rename one of the two. Two vocabularies with names in common "
-    "cannot be used together.",
-    bad="rulebook example\nsignal ⟪wet|raining⟫\nsurface is one of dry, wet\n"
-    "hard rule r { require always dry }\n",
-)
+DECLARED_TWICE = Code("R0204")
 
-UNKNOWN_UNIT = Code(
-    "R0209",
-    title="a unit of measure is unknown",
-    why="Numbers have units. The units of quantities, parameters and comparisons must be known so "
-    "that they can be converted exactly. Units are case-sensitive. A plain number, such as how "
-    "many passengers there are, is declared `in m/m`.",
-    bad="rulebook example\nquantity speed in ⟪KMH|km/h⟫ default 0\n"
-    "hard rule r { require always speed <= 50 ⟪KMH|km/h⟫ }\n",
-)
+UNKNOWN_UNIT = Code("R0209")
 
-UNKNOWN_DIMENSION = Code(
-    "R0210",
-    title="a kind of number is unknown",
-    why="After the colon, a parameter states its kind of number: a length, time, speed, "
-    "acceleration, mass, angle, area, frequency, or a plain number.",
-    bad="rulebook example\nquantity speed in km/h default 0\n"
-    "param pace : ⟪velocity|speed⟫ = 7 km/h\nhard rule r { require always speed <= pace }\n",
-)
+UNKNOWN_DIMENSION = Code("R0210")
 
-TYPE_CIRCLE = Code(
-    "R0304",
-    title="types are subtypes of each other in a circle",
-    why="A type can be a subtype of another, that of a third, and so on, but never of itself.",
-    bad="rulebook example⟪|\ntype vehicle⟫\ntype bus is vehicle⟪\ntype vehicle is bus|⟫\n"
-    "signal p\nhard rule r { require always p }\n",
-)
+TYPE_CIRCLE = Code("R0304")
 
-UNFITTING_DEFAULT = Code(
-    "R0305",
-    title="a default is not one of the values",
-    why="The default of an enumeration applies where no value is given, so it must be one of the "
-    "values.",
-    bad="rulebook example\nlight is one of red, green default ⟪grean|green⟫\n"
-    "hard rule r { require always red }\n",
-)
+UNFITTING_DEFAULT = Code("R0305")
 
-PARAMETER_WITHOUT_TYPE = Code(
-    "R0308",
-    title="a parameter's type is left out where it is not clear",
-    why="Without a type, `signal near(o)` is about objects of the only type without a parent. If "
-    "there is none, or more than one, the type must be written.",
-    bad="rulebook example\ntype vehicle\ntype pedestrian\nsignal near(o⟪|: vehicle⟫)\n"
-    "hard rule r (v: vehicle) { require never near(v) }\n",
-)
+PARAMETER_WITHOUT_TYPE = Code("R0308")
 
-NOTHING_TO_MARK = Code(
-    "R0216",
-    title="a constant or presumed name is not declared",
-    why="A `constant` or `presumed` line lists signals, quantities and enumerations, which must "
-    "be declared in the rulebook or in a vocabulary that it uses. It lists an enumeration, not "
-    "one of its values, and the bare name of a declaration about objects.",
-    bad="rulebook example\nkind is one of a_car, a_truck\nconstant ⟪kinds|kind⟫\n"
-    "hard rule r { require always a_car }\n",
-)
+NOTHING_TO_MARK = Code("R0216")
 
-NOT_TO_BE_PRESUMED = Code(
-    "R0325",
-    title="a name cannot be presumed",
-    why="A presumed name has its default where no source provides it, so it needs a default. "
-    "Every verdict that rests on it says so. A rulebook and its vocabularies may presume a dozen "
-    "names, since a verdict that rests on more says little about what was observed. Names that "
-    "are not presumed are unknown where nothing provides them.",
-    bad="rulebook example\nsignal waved_through⟪| default false⟫\npresumed waved_through\n"
-    "hard rule r { require never waved_through }\n",
-)
+NOT_TO_BE_PRESUMED = Code("R0325")
 
 
 _OTHER_DIMENSIONS: Final = {

@@ -7,15 +7,7 @@ from rulec.diagnostics.code import Code
 from rulec.diagnostics.ways_out import in_header, offering
 from rulec.syntax import tree
 
-UNKNOWN_SIDE = Code(
-    "R0211",
-    title="the near or the far side is undefined",
-    why="The near side is the side of the kerb: the right one where traffic drives on the right. "
-    "`near_side_of` and `far_side_of` need a `traffic` line in the rulebook or in one that it "
-    "extends, and a vocabulary with `left_of` and `right_of`.",
-    bad="rulebook example\n⟪|traffic right\n⟫use road\n"
-    "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n",
-)
+UNKNOWN_SIDE = Code("R0211")
 
 
 def no_traffic(use: tree.AtomUse, name: str) -> Diagnostic:

@@ -28,78 +28,20 @@ from rulec.syntax.messages.larger_edits import (
 )
 from rulec.syntax.tree_printer import print_parameter, print_parameters
 
-RULE_TWICE = Code(
-    "R0205",
-    title="two rules have the same name",
-    why="Verdicts refer to rules by name, and compiling writes one file per rule, so every rule "
-    "needs a unique name.",
-    bad="rulebook example\nsignal p, q\nhard rule a { require always p }\n"
-    "hard rule ⟪a|b⟫ { require always q }\n",
-)
+RULE_TWICE = Code("R0205")
 
-NOT_INHERITED = Code(
-    "R0212",
-    title="there is nothing to override, confirm, drop, soften, set or redefine",
-    why="These words change something inherited from the extended rulebook. If it has nothing of "
-    "that name, the line would have no effect.",
-    bad='rulebook example\nextends esterle2019\ndrop rule R4 because "not in this country"\n',
-    good='rulebook example\nextends esterle2019\ndrop rule R3 because "not in this country"\n',
-)
+NOT_INHERITED = Code("R0212")
 
-LOST_EXCEPTION = Code(
-    "R0260",
-    title="an override replaces exceptions that it inherits",
-    why="A clause in an override replaces all inherited clauses of its kind, so `unless` replaces "
-    "every inherited exception, and the rule again forbids what these allowed. `also unless` adds "
-    "an exception to the inherited ones. If you mean to replace them, repeat those that remain, "
-    "or state the new rule by `says` or `require`.",
-    bad="rulebook example\nextends vienna\n"
-    "override rule keep_near_side { ⟪|also ⟫unless congested at some point }\n",
-)
+LOST_EXCEPTION = Code("R0260")
 
-IDLE_OVERRIDE = Code(
-    "R0261",
-    title="an override changes nothing",
-    why="Everything that an `override rule` does not mention stays as inherited, including whose "
-    "law the rule is. An override that says nothing new has no effect: either the difference is "
-    "missing, or the rule is this rulebook's own law unchanged, which `confirm rule` states.",
-    bad="rulebook example\nextends vienna\noverride rule keep_near_side { }\n",
-    good='rulebook example\nextends vienna\nconfirm rule keep_near_side { cite "s. 1" }\n',
-)
+IDLE_OVERRIDE = Code("R0261")
 
-OTHER_TYPES = Code(
-    "R0262",
-    title="an override is about objects of another type",
-    why="Variables in an override replace those that are inherited. If one has another type there, "
-    "the rule no longer applies to the same road users: about each car, it forbids nothing of "
-    "trucks. Leave the variables out to keep the inherited types. If the law is about the other "
-    "type, say by `says` or `require` what the rule is now.",
-    bad="rulebook example\nextends vienna\n"
-    'override rule following_distance ⟪(v: car) |⟫{ cite "s. 1" }\n',
-)
+OTHER_TYPES = Code("R0262")
 
-INHERITED_ALREADY = Code(
-    "R0214",
-    title="a name is inherited already",
-    why="A rulebook inherits all rules, options, parameters and definitions of the one that it "
-    "extends. To change one of them, use `override rule`, `set` or `redefine`.",
-    bad="rulebook example\nextends esterle2019\n"
-    "hard rule R3 (p: pedestrian) { require always not (R_pc and l_p) }\n",
-    good="rulebook example\nextends esterle2019\n"
-    "override rule R3 (p: pedestrian) {\n"
-    "  require always not (R_pc and l_p)\n"
-    "  accept { l_p and R_cw }\n  reject { l_p and R_pc }\n}\n",
-)
+INHERITED_ALREADY = Code("R0214")
 
 
-NEVER_IN_FORCE = Code(
-    "R0324",
-    title="something is in force until a day before it begins",
-    why="What is `in force from` one day `until` another applies on both days and in between. If "
-    "the second day comes first, there is no such day.",
-    bad="rulebook example\nsignal wet\nhard rule r {\n"
-    "  in force from ⟪2024|2020⟫-07-01 until ⟪2020|2024⟫-06-30\n  require never wet\n}\n",
-)
+NEVER_IN_FORCE = Code("R0324")
 
 
 _CHANGES = {"option": "set", "parameter": "set", "definition": "redefine"}

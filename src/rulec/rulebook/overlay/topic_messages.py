@@ -11,23 +11,10 @@ from rulec.rulebook.names.declaration_messages import DECLARED_TWICE
 from rulec.syntax import tree
 from rulec.syntax.messages.larger_edits import clause_left_out
 
-PRIORITY_CIRCLE = Code(
-    "R0321",
-    title="levels of priority form a circle",
-    why="With `a > b`, level a is above level b. Equal levels are written `a = b`.",
-    bad="rulebook example\npriority safety > legal\n⟪priority legal > safety\n|⟫signal wet\n"
-    "hard rule r in legal { require never wet }\n",
-)
+PRIORITY_CIRCLE = Code("R0321")
 
 
-UNKNOWN_TOPIC = Code(
-    "R0217",
-    title="a topic is declared nowhere",
-    why="Rules name their topics, from which tables of coverage are made. Topics are declared in "
-    'the rulebook or in one that it extends, by `topics { NAME "title" }`.',
-    bad='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\nhard rule r {\n'
-    "  topic ⟪zebras|zebra⟫\n  require always p\n}\n",
-)
+UNKNOWN_TOPIC = Code("R0217")
 
 
 def no_topic(name: tree.Name, known: Sequence[str], of_rule: Sequence[str]) -> Diagnostic:

@@ -12,29 +12,9 @@ from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 
-CONTRADICTORY_AXIOMS = Code(
-    "R0409",
-    title="facts contradict each other",
-    why="A `fact` holds in every state. If several facts cannot hold together, or one cannot hold "
-    "at all, there is no state to judge. The message names a minimal set of contradictory facts.",
-    bad="rulebook example\nsignal wet, fog default false\nfact ⟪wet or fog\nfact not wet\n"
-    "fact not fog|not (wet and fog)⟫\nhard rule r { require always not ⟪(wet and fog)|wet⟫ }\n",
-)
+CONTRADICTORY_AXIOMS = Code("R0409")
 
-IMPOSSIBLE_TRIGGER = Code(
-    "R0363",
-    title="what triggers a rule is possible in no state",
-    why="The left side of an `implies` that always holds, the first phase of a forbidden "
-    "sequence, a condition (`when`), an exception (`unless`), or everything that a rule forbids "
-    "is impossible in every state, so the rule or its exception has no effect. A number cannot be "
-    "both above 22 and below 6, and an enumeration has only one value: if one of them suffices, "
-    "write `or`. Or facts exclude it: then either a fact says too much, or the rule is not "
-    "needed. The message names a minimal set of facts that exclude it. `rulec analyze` also "
-    "considers sequences of states (R0805).",
-    bad="rulebook example\nsignal parked, standing, lit default false\n"
-    "fact parked implies standing\n"
-    "hard rule r { require always (parked and ⟪not |⟫standing implies lit) }\n",
-)
+IMPOSSIBLE_TRIGGER = Code("R0363")
 
 
 def contradictory_facts(

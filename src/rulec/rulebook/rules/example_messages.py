@@ -21,34 +21,11 @@ from rulec.syntax.tree_printer import print_formula
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.dimensions import Unit
 
-CONTRADICTORY_STATE = Code(
-    "R0306",
-    title="a state of an example contradicts itself or a fact",
-    why="In one state a signal is true or false, an enumeration has exactly one value, and every "
-    "`fact` of the vocabulary holds. Values that a state does not mention have their default, if "
-    "the rule reads them. Successive states are separated by `;`.",
-    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n  require always not r(v)\n"
-    "  accept { b(v)⟪ and|;⟫ l(v) }\n}\n",
-)
+CONTRADICTORY_STATE = Code("R0306")
 
-INCOMPLETE_STATE = Code(
-    "R0307",
-    title="a state lacks a value that has no default",
-    why="Values that an example does not mention have the default of their declaration. Without a "
-    "default, every state must give the value if the formula needs it: a missing value is never "
-    "taken to be false.",
-    bad="rulebook example\nsignal wet, fog\nhard rule r {\n  require always not (wet and fog)\n"
-    "  accept { wet ⟪|and not fog ⟫}\n}\n",
-)
+INCOMPLETE_STATE = Code("R0307")
 
-DENIED_VALUE = Code(
-    "R0310",
-    title="a state denies a value instead of naming one",
-    why="In a state of an example an enumeration has exactly one value, which the state must "
-    "name. Excluding one value would leave open which of the others it has.",
-    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n  require always not r(v)\n"
-    "  accept { ⟪not r|l⟫(v) }\n}\n",
-)
+DENIED_VALUE = Code("R0310")
 
 
 def denied(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> Diagnostic:

@@ -22,27 +22,9 @@ from rulec.syntax.keywords import RESERVED
 from rulec.syntax.messages.literals import misleads
 from rulec.syntax.scanner import Token
 
-HIDDEN_IN_COMMENT = Code(
-    "R0118",
-    title="a comment contains a control character",
-    why="A character that controls a terminal, or reverses the direction of the text, can make a "
-    "comment look like a rule or a rule like a comment (CVE-2021-42574). Comments may contain "
-    "only visible characters, spaces and tabs.",
-    bad="printf 'rulebook a signal p # ⟪\\342\\200\\256|left⟫\\nhard rule r { require always "
-    "p }' | rulec check -",
-    kind="command",
-)
+HIDDEN_IN_COMMENT = Code("R0118")
 
-CONFUSABLE_NAME = Code(
-    "R0119",
-    title="a name looks like another one",
-    why="Two names look alike but are different, or a name that looks Latin mixes letters of "
-    "several scripts or uses a script that no other word of the file uses (Unicode Technical "
-    "Standard 39). A rule about the wrong one of two such names would never be violated. Rename "
-    "one of them.",
-    bad="rulebook example\nsignal stop, ⟪\u0455top|halt⟫\n"
-    "hard rule r { require never (stop and ⟪\u0455top|halt⟫) }\n",
-)
+CONFUSABLE_NAME = Code("R0119")
 
 
 def hidden_in_comment(place: Span) -> Diagnostic:

@@ -25,44 +25,13 @@ from rulec.syntax.messages.parse_context import (
 from rulec.syntax.parse_nodes import MAX_DEPTH, Mismatch
 from rulec.syntax.scanner import Token
 
-UNEXPECTED_WORD = Code(
-    "R0104",
-    title="something is not allowed at this place",
-    why="The text can be read up to the underlined place, but it cannot continue as it does. The "
-    "message lists what is possible there; often an operator is spelt differently, a word is "
-    "misspelt, or a separator is missing. Two comparisons in a row are written out: `1 m < gap(v) "
-    "and gap(v) < 2 m`; a conditional inside a formula needs parentheses; the numbers of a bound "
-    "need a unit.",
-    bad="rulebook example\nsignal rain, wet\nhard rule r { require rain => wet }\n",
-    good="rulebook example\nsignal rain, wet\nhard rule r { require always (rain implies wet) }\n",
-)
+UNEXPECTED_WORD = Code("R0104")
 
-UNTERMINATED_TEXT = Code(
-    "R0105",
-    title="a text has no closing quote",
-    why="A text is enclosed in straight double quotes and ends on the line on which it begins, "
-    'even if the line is long. A quote inside a text is written `\\"`.',
-    bad='rulebook example\ntitle "An example⟪|"⟫\nsignal p\nhard rule r { require always p }\n',
-)
+UNTERMINATED_TEXT = Code("R0105")
 
-FORMULA_TOO_DEEP = Code(
-    "R0111",
-    title="a formula is nested too deeply, or a formula or an example is too long",
-    why="A formula may be nested 200 levels deep and have 10,000 words and signs, an example "
-    "10,000 states. Larger ones are not readable and usually come from a program. Divide the "
-    "formula into several rules, and judge a recorded drive as a trace.",
-    bad=f"rulebook example\nsignal p\nhard rule r {{\n  require\n{'    ' + '!' * 67}\n"
-    f"{'    ' + '!' * 67}\n{'    ' + '!' * 67} p\n}}\n",
-    good="rulebook example\nsignal p\nhard rule r { require never p }\n",
-)
+FORMULA_TOO_DEEP = Code("R0111")
 
-RESERVED_WORD = Code(
-    "R0113",
-    title="a word of the language is used as a name",
-    why="Words such as `rule`, `always` and `G` are reserved everywhere. Names are "
-    "case-sensitive: `g` can be a name.",
-    bad="rulebook example\nsignal ⟪always|at_all_times⟫\nhard rule r { require true }\n",
-)
+RESERVED_WORD = Code("R0113")
 
 
 _LINES = (

@@ -24,65 +24,17 @@ from rulec.syntax.scanner import Token
 EXPECTED_BEGINNING = "expected `rulebook NAME`"
 HOW_TO_BEGIN = "a rulebook begins with `rulebook NAME`, a vocabulary with `vocabulary NAME { … }`"
 
-EMPTY_FILE = Code(
-    "R0103",
-    title="a file is empty",
-    why="The file contains only white space and comments. A rulebook begins with `rulebook NAME`, "
-    "a vocabulary with `vocabulary NAME {`.",
-    bad="# nothing yet\n",
-    good="# as short as can be\nrulebook shortest\nsignal p\n"
-    "hard rule keep_it { require always p }\n",
-)
+EMPTY_FILE = Code("R0103")
 
-MISSING_PART = Code(
-    "R0114",
-    title="a required part is missing",
-    why="A file first states what it is. A rulebook has at least one rule, or extends another "
-    "rulebook. Every rule has one `require`, unless it overrides or confirms another rule without "
-    "changing its requirement. A confirmation has a `cite`.",
-    bad='rulebook example\nhard rule r { says "Drive with care." }\n',
-    good="rulebook example\nsignal careful\n"
-    'hard rule r { says "Drive with care." require always careful }\n',
-)
+MISSING_PART = Code("R0114")
 
-MISPLACED_LINE = Code(
-    "R0115",
-    title="a line is in the wrong part of a file",
-    why="Header lines (`title`, `law`, `use`, `extends`, `traffic`, `semantics`, `step`, "
-    "`priority`) come between `rulebook NAME` and the first item; a vocabulary contains only "
-    "declarations; a file contains one rulebook or one vocabulary.",
-    bad="vocabulary town {\n  signal fog\n  hard rule r { require never fog }\n}\n",
-    good="rulebook town\nsignal fog\nhard rule r { require never fog }\n",
-)
+MISPLACED_LINE = Code("R0115")
 
-GIVEN_TWICE = Code(
-    "R0116",
-    title="something is given twice",
-    why="A rulebook has one title and one law, and extends one other rulebook. A rule has one "
-    "`require`, `cite`, `says` and `when`, and any number of `unless` clauses and examples. Join "
-    "two requirements by `and`, or put them into two rules.",
-    bad="rulebook example\nsignal p, q\nhard rule r { require always p require always q }\n",
-    good="rulebook example\nsignal p, q\nhard rule r { require always (p and q) }\n",
-)
+GIVEN_TWICE = Code("R0116")
 
-NOT_A_RULEBOOK = Code(
-    "R0117",
-    title="a file is not a rulebook",
-    why="Apart from comments, the file begins with neither `rulebook` nor `vocabulary`, so it is "
-    "probably not the intended file. Its content is not shown, because it might be confidential.",
-    bad="Dear all,\nplease find the rules attached.\n",
-    good="rulebook attached\nsignal p\nhard rule r { require always p }\n",
-)
+NOT_A_RULEBOOK = Code("R0117")
 
-CONFIRMED_AND_CHANGED = Code(
-    "R0120",
-    title="a confirmation changes the rule",
-    why="The words `confirm rule` state that an inherited rule is also this rulebook's own law, "
-    "and by which provision. The requirement stays as inherited: a confirmation may have `cite`, "
-    "`source`, `certainty`, `says`, `topic` and examples, but no other clause.",
-    bad='rulebook example\nextends vienna\nconfirm rule near_side_passing {\n  cite "s. 1"\n'
-    "⟪  unless congested\n|⟫}\n",
-)
+CONFIRMED_AND_CHANGED = Code("R0120")
 
 
 def changed_by_confirming(rule: str, word: str, place: Span) -> Diagnostic:
@@ -162,22 +114,9 @@ _COMPILED, _HEAD = '"rulec compiled rulebook"', 1000
 """The text at the beginning of a compiled rulebook, and how many characters are searched."""
 
 
-UNBALANCED_BRACE = Code(
-    "R0108",
-    title="a brace is missing, or does not match",
-    why="The clauses of a rule, the states of an example and the items of a vocabulary are "
-    "enclosed in `{` and `}`. The message says which block was not opened or closed.",
-    bad="rulebook example\nsignal p\nhard rule a { require always p⟪| }⟫\n"
-    "hard rule b { require never p }\n",
-)
+UNBALANCED_BRACE = Code("R0108")
 
-OUTSIDE_BRACES = Code(
-    "R0109",
-    title="something is outside the braces that it belongs in",
-    why="A clause such as `cite` or `accept` belongs inside the braces of a rule. Nothing can "
-    "follow the closing `}` of a vocabulary.",
-    bad="rulebook example\nsignal p\nhard rule r { require always p ⟪}\n|⟫accept { p }⟪| }⟫\n",
-)
+OUTSIDE_BRACES = Code("R0109")
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,10 +21,9 @@ from rulec.cli.options.verb_class import argument, option, verb
 from rulec.cli.output import answer_lines, put_answer, width_of
 from rulec.cli.verb_table import FORMER, VERBS
 from rulec.diagnostics import any_of, first_of, nearest_name
-from rulec.diagnostics.code import Code
 from rulec.logic.formula import Atom
 from rulec.recordings.recording_inputs import STANDARD_INPUT, input_files
-from rulec.report.findings import code_registry
+from rulec.report.findings.code_registry import CodeExplanation, all_codes, as_sections
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_remark
 from rulec.rulebook.batch.answer_cache import AnswerQuestion
@@ -114,27 +113,24 @@ def _explained(
     names: Sequence[str], form: str, width: int, *, every: bool
 ) -> tuple[tuple[str, tuple[str, ...]], Sequence[str]]:
     """The explanation and the unknown names, and the files that words were searched in."""
-    by_name = {name: code_registry.code_named(name.upper()) for name in names}
+    by_name = {name: all_codes().get(name.upper()) for name in names}
     words = {name: _words(name) for name, code in by_name.items() if code is None}
     unknown = tuple(name for name, found in words.items() if not found)
     if unknown and len(unknown) == len(by_name):
         raise click.UsageError("\n".join(map(_unknown, unknown)))
     codes = [code for code in by_name.values() if code is not None]
-    codes = list(dict.fromkeys(codes)) if names else [*code_registry.all_codes().values()]
+    codes = list(dict.fromkeys(codes)) if names else [*all_codes().values()]
     found_words = [word for words_of_name in words.values() for word in words_of_name]
     match form:
         case "json":
             text = _as_json(codes, found_words)
         case "markdown" if every:
-            text = f"# Codes\n\n{code_registry.as_sections()}"
+            text = f"# Codes\n\n{as_sections()}"
         case "markdown":
-            pages = [
-                f"# {code.code}: {code.title}\n\n{code_registry.as_markdown(code)}"
-                for code in codes
-            ]
+            pages = [f"# {code.code}: {code.title}\n\n{code.markdown}" for code in codes]
             text = "\n\n".join([*pages, *_texts(found_words, None)])
         case _:
-            pages = [code_registry.as_text(code, width) for code in codes]
+            pages = [code.as_text(width) for code in codes]
             text = "\n\n\n".join([*pages, *_texts(found_words, width)])
     return (text, unknown), available_files(_places()) if words else ()
 
@@ -163,7 +159,7 @@ def _texts(words: Sequence[lazy.FoundWord], width: int | None) -> list[str]:
     ]
 
 
-def _as_json(codes: Sequence[Code], words: Sequence[lazy.FoundWord]) -> str:
+def _as_json(codes: Sequence[CodeExplanation], words: Sequence[lazy.FoundWord]) -> str:
     if words:
         if codes:
             raise click.UsageError("as JSON codes and words are two lists; ask for either")
@@ -178,7 +174,7 @@ def _way_out(name: str) -> str:
         return f"it is a file, which `rulec show {name}` explains"
     if name in VERBS or name in FORMER:
         return f"it is a command, which `rulec help {name}` explains"
-    if near := nearest_name(name.upper(), code_registry.all_codes()):
+    if near := nearest_name(name.upper(), all_codes()):
         return f"did you mean `{near}`?"
     if name in available_rulebooks(places):
         return f"it is a rulebook, which `rulec show {name}` explains"

@@ -11,7 +11,7 @@ from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.verb_class import Verb, argument, asking
 from rulec.cli.verb_table import FORMER, VERBS, called
 from rulec.diagnostics import nearest_name
-from rulec.report.findings.code_registry import code_named
+from rulec.report.findings.code_registry import all_codes
 from rulec.settings import search_path
 
 
@@ -52,7 +52,7 @@ def command(
 def _way_out(word: str) -> str:
     """Where something else of this name is explained, or where commands are listed."""
     places = (*search_path(), Path())
-    if code_named(word.upper()) or lazy.find_word(word, places):
+    if word.upper() in all_codes() or lazy.find_word(word, places):
         return f"`rulec explain {word}` explains it"
     if books := lazy.rulebooks_with_rule(word, places):
         return f"it is a rule, which `rulec show {books[0]} {word}` explains"
