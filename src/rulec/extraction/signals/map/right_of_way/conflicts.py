@@ -153,16 +153,17 @@ def _takes_way(context: DriveContext, ego: Passing, foe: Passing, left_m: float)
         if late_s >= limits.held_up_s:
             return None if held_up else False
         return (knows and held_up) or None
-    if not train and not _is_near(context, ego, foe, _CLEAR_M, comes):
+    if not train and _is_near(context, ego, foe, _CLEAR_M, comes) is False:
         stands = np.fmin.reduce(speed[sees : ceil(comes) + 1]) < SLOWEST_MPS
         # Nobody saw where ego was before its track began
         came = (ego.enters or 0) > tracks.present[own.row].argmax()
         if slower is False and came and not stands and not _join(context, own, other):
             return False
     passed = foe.leaves is not None and foe.leaves < until
-    if passed and not _is_near(context, ego, foe, 0.0, comes):
+    near = passed and _is_near(context, ego, foe, 0.0, comes)
+    if passed and not near:
         # It drove round ego, or ego crept on behind it
-        return False if slower is False else None
+        return False if slower is False and near is False else None
     waits = speed[moved_in] < SLOWEST_MPS and moved_in < other.first
     takes = _is_near(context, ego, foe, -_GRAZES_M, comes) or (
         (train or slower) and (ego.leaves is not None or _drives_on(context, own, ceil(comes)))
@@ -178,7 +179,7 @@ def _takes_side(context: DriveContext, ego: Passing, foe: Passing) -> bool | Non
     """
     speed, own, other = context.surroundings.passages.tracks.speed, ego.passage, foe.passage
     passed = ceil(_until(context, foe))
-    if not _is_near(context, ego, foe, _CLEAR_M, passed):
+    if _is_near(context, ego, foe, _CLEAR_M, passed) is False:
         return False
     sees, moved_in = _sees(context, ego, other)
     came_mps = np.fmax.reduce(speed[other.row, sees : moved_in + 1])
@@ -244,14 +245,20 @@ def _until(context: DriveContext, passing: Passing) -> float:
 
 def _is_near(
     context: DriveContext, ego: Passing, foe: Passing, margin_m: float, until: float
-) -> bool:
+) -> bool | None:
     """Whether the other's body is less than ``yielding_s`` later where ego's was.
 
-    Ego's body is larger by a margin and the tolerance of distances, or smaller.
+    Ego's body is larger by a margin. None within the tolerance of places.
     """
-    margin_m += (2 if margin_m > 0 else -1) * context.tolerances.place_m
     rows, times = (ego.passage.row, foe.passage.row), (ceil(ego.enters or 0), ceil(until))
-    return gap_s(context, rows, times, margin_m) < context.thresholds.yielding_s
+    place_m, within_s = context.tolerances.place_m, context.thresholds.yielding_s
+    if gap_s(context, rows, times, margin_m - place_m) < within_s:
+        return True
+    return (
+        None
+        if place_m and gap_s(context, rows, times, margin_m + 2 * place_m) < within_s
+        else False
+    )
 
 
 def _join(context: DriveContext, own: Passage, other: Passage) -> bool:
