@@ -160,10 +160,10 @@ def _takes_way(context: DriveContext, ego: Passing, foe: Passing, left_m: float)
         if slower is False and came and not stands and not _join(context, own, other):
             return False
     passed = foe.leaves is not None and foe.leaves < until
-    near = passed and _is_near(context, ego, foe, 0.0, comes)
-    if passed and not near:
+    if passed and not _is_near(context, ego, foe, 0.0, comes):
         # It drove round ego, or ego crept on behind it
-        return False if slower is False and near is False else None
+        clear = _is_near(context, ego, foe, -_GRAZES_M, comes) is False
+        return False if slower is False and clear else None
     waits = speed[moved_in] < SLOWEST_MPS and moved_in < other.first
     takes = _is_near(context, ego, foe, -_GRAZES_M, comes) or (
         (train or slower) and (ego.leaves is not None or _drives_on(context, own, ceil(comes)))
