@@ -6,11 +6,13 @@ from pathlib import Path
 
 from rulec.extraction.drives import Drives
 from rulec.extraction.selection import RequestedDrives, selected_drives
-from rulec.extraction.signals.ego_signals import ego_signals
-from rulec.extraction.signals.map.line_signals import line_signals
-from rulec.extraction.signals.map.map_signals import map_signals
-from rulec.extraction.signals.participants.following_signals import following_signals
-from rulec.extraction.signals.participants.participant_signals import participant_signals
+from rulec.extraction.signals import ego_signals
+from rulec.extraction.signals.map import lanes_ahead, line_signals, map_signals
+from rulec.extraction.signals.participants import (
+    following_signals,
+    participant_conduct,
+    participant_signals,
+)
 from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.extraction.traffic_thresholds import LEAST_S, USUAL
 from rulec.rulebook.reading.rulebook_reader import load_rulebook
@@ -20,6 +22,7 @@ from support.builders.drive_contexts import context_of
 from support.builders.recordings import recording, straight, vehicle
 from support.defined_words import LEFT_TO_DEFINITIONS
 from support.signal_arrays import bounded
+from support.words import words_of
 
 DOCS = Path(__file__).parents[2] / "docs"
 EXTRACTION = Path(__file__).parents[2] / "src" / "rulec" / "extraction"
@@ -28,7 +31,13 @@ DEFINITIONS, WRONG = (
     (DOCS / "recorded_words.md").read_text().split("## What each word may get wrong")
 )
 
-SIGNALS = (ego_signals, participant_signals, following_signals, map_signals, line_signals)
+SIGNALS = (
+    words_of(ego_signals),
+    words_of(participant_signals, participant_conduct, lanes_ahead, following_signals),
+    words_of(following_signals),
+    words_of(map_signals),
+    words_of(line_signals),
+)
 """The passes that measure numbers."""
 
 NOT_IN_THAT = {

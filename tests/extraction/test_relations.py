@@ -7,13 +7,19 @@ import shapely
 from hypothesis import given
 
 from rulec.extraction.drives import Drive, Drives
-from rulec.extraction.signals.participants.participant_signals import participant_signals
+from rulec.extraction.signals.map import lanes_ahead
+from rulec.extraction.signals.participants import (
+    following_signals,
+    participant_conduct,
+    participant_signals,
+)
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording
 from support.generators.random_recordings import STEP_S, lanes, scenes
 from support.signal_arrays import said, unknown_in, values_of
+from support.words import words_of
 
 PLACE_M = 0.05
 """Places of a recording made by hand are as good."""
@@ -117,7 +123,9 @@ def sides(*ys, own_y=0.0, name="USA_Peach-1", width=2.0):
     """
     others = [steady(20 + k, 30, y, width=width) for k, y in enumerate(ys)]
     found = replace(recording(lanes(2), [steady(7, 0, own_y), *others]), name=name)
-    signals = participant_signals(context_of(found))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(found)
+    )
     known = ~unknown_in(signals, "lateral")[:, 0]
     told = said(signals, "lateral")[:, 0].tolist()
     return [side if sure else None for side, sure in zip(told, known.tolist(), strict=True)]
@@ -163,7 +171,9 @@ def test_a_map_that_lies_off_the_tracks_does_not_tell_lanes():
     def told(*others):
         found = replace(recording(lanes(2), [ego, other, *others]), name=EXACT)
         context = context_of(found)
-        signals = participant_signals(context)
+        signals = words_of(
+            participant_signals, participant_conduct, lanes_ahead, following_signals
+        )(context)
         row = [body.id for body in context.tracks.participants].index("8")
         return context.map_offset_m[0], bool(unknown_in(signals, "lateral")[row, 0])
 
@@ -185,7 +195,9 @@ def test_one_that_stands_and_leaves_room_is_not_followed_too_closely():
     def safe(y):
         cycle = steady(7, 0, y, speed=6.0, width=0.6, kind="bicycle")
         found = recording(lanes(1), [cycle, steady(8, 5, 0.5, speed=0.0)])
-        signals = participant_signals(context_of(replace(found, name=EXACT)))
+        signals = words_of(
+            participant_signals, participant_conduct, lanes_ahead, following_signals
+        )(context_of(replace(found, name=EXACT)))
         assert said(signals, "lateral")[0, 0] == "same_lane"
         return bool(values_of(signals, "safe_gap")[0, 0])
 

@@ -185,13 +185,13 @@ def test_of_twenty_candidates_one_raises(monkeypatch):
 
 
 def test_of_twenty_candidates_one_loses_a_word(monkeypatch):
-    from rulec.extraction.traces.to_trace import _SIGNALS
+    from rulec.extraction.traces.to_trace import _WORDS
 
     world = street(speed=10.0)
     paths = futures(world)
     before = score(paths, world, GERMAN, world.past)
-    words = next(words for words in _SIGNALS._passes if "lane_change" in words)
-    computed = _SIGNALS._passes[words]
+    words = next(words for words in _WORDS._definitions if "lane_change" in words)
+    computed = _WORDS._definitions[words]
     fastest = paths[-1, -1, 0]
 
     def broken(context):
@@ -199,8 +199,8 @@ def test_of_twenty_candidates_one_loses_a_word(monkeypatch):
             raise ZeroDivisionError("planted")
         return computed(context)
 
-    monkeypatch.setitem(_SIGNALS._passes, words, broken)
-    monkeypatch.setattr(_SIGNALS, "_read", {})
+    monkeypatch.setitem(_WORDS._definitions, words, broken)
+    monkeypatch.setattr(_WORDS, "_read", {})
     after = score(paths, world, GERMAN, world.past)
     check_nineteen_are_scored(19, before, after, is_whole=False)
     lost = {rule.rule for rule in after.candidates[19].lost}

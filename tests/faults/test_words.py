@@ -7,29 +7,29 @@ from rulec.api.rulebook_compilation import machines
 from rulec.diagnostics.fault_messages import FAULT
 from rulec.extraction.signals.settling import _IMPLIED
 from rulec.extraction.traces.recorded_drive import NoDrive
-from rulec.extraction.traces.to_trace import _SIGNALS
+from rulec.extraction.traces.to_trace import _WORDS
 from rulec.logic.free_names import names_of
 from rulec.monitoring.told_names import names_behind
 from support.defined_words import LEFT_TO_DEFINITIONS
 
 GERMAN = machines("de")
 RECORDING = rulec.read_recording("docs/samples/following.xml")
-PASSES = list(_SIGNALS._passes)
+PASSES = list(_WORDS._definitions)
 QUICK = 12
 """Every so many passes are tried in the quick profile."""
 
 
 def planted(monkeypatch, words, raises=lambda context: True):
     """Signals of which the function for some words raises."""
-    computed = _SIGNALS._passes[words]
+    computed = _WORDS._definitions[words]
 
     def broken(context):
         if raises(context):
             raise KeyError("planted")
         return computed(context)
 
-    monkeypatch.setitem(_SIGNALS._passes, words, broken)
-    monkeypatch.setattr(_SIGNALS, "_read", {})
+    monkeypatch.setitem(_WORDS._definitions, words, broken)
+    monkeypatch.setattr(_WORDS, "_read", {})
 
 
 def judged(recording=RECORDING, wanted=None):
@@ -103,7 +103,7 @@ def test_it_costs_the_drive_in_which_it_raises(monkeypatch):
     assert fault.code == FAULT.code
     assert "`lane_change` in the drive of `1`" in fault.message
     assert "KeyError 'planted'" in fault.message
-    assert "signal_passes.py" in fault.message
+    assert "words.py" in fault.message
 
 
 def after_faults(answers):

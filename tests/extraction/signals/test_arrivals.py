@@ -9,10 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map import priority_signals
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 STEP_S = 0.25
@@ -51,7 +52,7 @@ def told(**ways):
     others = [along(8 + k, WAYS[came], way) for k, (came, way) in enumerate(ways.items())]
     line = np.concatenate(([(-60.0, -2.0)], ARC, [(2.0, 90.0)]))
     found = recording(ROADS, [along(7, line, EGO), *others])
-    return priority_signals(context_of(replace(found, step_s=STEP_S), ("1", "2", "3")))
+    return words_of(priority_signals)(context_of(replace(found, step_s=STEP_S), ("1", "2", "3")))
 
 
 def both(found, word, sides=("left", "right")):

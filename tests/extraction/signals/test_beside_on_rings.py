@@ -13,12 +13,13 @@ import pytest
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
-from rulec.extraction.signals.conduct.lane_changes.lane_change_signals import lane_change_signals
-from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
+from rulec.extraction.signals.conduct import turning_conflicts
+from rulec.extraction.signals.conduct.lane_changes import indicator_signals, lane_change_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 LANE_M, OWN_M, EDGE_M, STEP_S = 20.0, 19.5, 22.0, 0.1
 TIMES = np.arange(0, 12, STEP_S)
@@ -88,7 +89,10 @@ def test_who_leaves_a_ring_may_be_in_the_way_of_one_beside_it(
     found = seen(behind_m, mps, brakes_mps2)
     found = found if side == "right" else mirrored_recording(found)
     context = context_of(found, ("r", "rx", "x"), side)
-    turns, changes = turning_conflicts(context), lane_change_signals(context)
+    turns, changes = (
+        words_of(turning_conflicts)(context),
+        words_of(lane_change_signals, indicator_signals)(context),
+    )
     assert bool(unknown_in(turns, "turns_in_way_of").any()) == cut
     assert not values_of(turns, "turns_in_way_of").any()
     assert not unknown_in(changes, "lane_is_clear").any()
@@ -96,7 +100,7 @@ def test_who_leaves_a_ring_may_be_in_the_way_of_one_beside_it(
 
 def test_who_follows_ego_is_not_beside_it():
     context = context_of(seen(10.0, 6.0, 2.0, radius=OWN_M, kind="car"), ("r", "rx", "x"), "right")
-    assert not unknown_in(turning_conflicts(context), "turns_in_way_of").any()
+    assert not unknown_in(words_of(turning_conflicts)(context), "turns_in_way_of").any()
 
 
 @pytest.mark.parametrize("book", ["de", "ch", "fr", "us", "gb"])

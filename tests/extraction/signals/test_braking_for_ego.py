@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map import priority_signals
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 ROADS = [
@@ -34,7 +35,7 @@ def from_the_right(y, roads=ROADS, kind="car", word="conflict_from_right", other
     other = vehicle(8, places, kind, speed=10, heading=np.pi / 2)
     found = recording(roads, [ego, other, *others], step_s=STEP_S)
     found = replace(found, complete=frozenset({"YIELD"}))
-    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    told = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     return "?" if unknown_in(told, word).any() else "FT"[int(values_of(told, word).any())]
 
 
@@ -145,7 +146,7 @@ def test_one_that_is_nearly_there_at_the_end_may_come_at_once():
     ego = vehicle(7, {k: (-20 + k, 0) for k in steps}, speed=10)
     other = vehicle(8, {k: (0, -31.0 + k) for k in steps}, speed=10, heading=np.pi / 2)
     found = replace(recording(WIDE, [ego, other], step_s=STEP_S), complete=frozenset({"YIELD"}))
-    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    told = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     assert unknown_in(told, "conflict_from_right").any()
     assert not values_of(told, "conflict_from_right").any()
 

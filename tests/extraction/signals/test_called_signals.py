@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.conduct.called_signals import called_signals
+from rulec.extraction.signals.conduct import called_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 STEPS = 40
 
@@ -25,7 +26,7 @@ def lanes():
 
 def told(word, road, *bodies):
     """The word's values, with "?" where it is unknown."""
-    signals = called_signals(context_of(recording(road, bodies, step_s=0.5)))
+    signals = words_of(called_signals)(context_of(recording(road, bodies, step_s=0.5)))
     column = values_of(signals, word)
     unknown = unknown_in(signals, word)
     return np.where(unknown, "?", column).tolist()

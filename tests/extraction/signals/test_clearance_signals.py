@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.clearance_signals import clearance_signals
+from rulec.extraction.signals import clearance_signals
 from support.builders.drive_contexts import along, steady, told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.words import words_of
 
 STEP_S = 0.5
 
@@ -22,7 +23,7 @@ def two_ways():
 def signals(lanes, *bodies, route=("1",), **thresholds):
     """The words, unknown ones as "?", which are the same in the mirror."""
     found = recording(lanes, bodies, step_s=STEP_S)
-    return told_on_both_sides(clearance_signals, found, route, **thresholds)
+    return told_on_both_sides(words_of(clearance_signals), found, route, **thresholds)
 
 
 def ego(x=0.0, mps=10.0, steps=4, y=0.0):
@@ -206,7 +207,7 @@ def waits(x=100.0, seconds=12.0, step_s=0.1):
 def told(lanes, body, *others, step_s=0.1):
     """Whether ego is obstructed, by time (s); the same in the mirror."""
     found = recording(lanes, [body, *others], step_s=step_s)
-    column = told_on_both_sides(clearance_signals, found, ("1",))["obstructed"]
+    column = told_on_both_sides(words_of(clearance_signals), found, ("1",))["obstructed"]
     return dict(zip([round(k * step_s, 1) for k in body.states], column, strict=True))
 
 

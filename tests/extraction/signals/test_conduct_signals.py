@@ -6,14 +6,20 @@ import numpy as np
 import pytest
 
 import rulec
-from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
-from rulec.extraction.signals.conduct.lane_changes.lane_change_signals import lane_change_signals
-from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
-from rulec.extraction.signals.conduct.reason_signals import reason_signals
-from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
-from rulec.extraction.signals.ego_signals import ego_signals
-from rulec.extraction.signals.map.crossing_signals import crossing_signals
-from rulec.extraction.signals.participants.participant_signals import participant_signals
+from rulec.extraction.signals import ego_signals
+from rulec.extraction.signals.conduct import (
+    lamp_signals,
+    manoeuvre_signals,
+    reason_signals,
+    turning_conflicts,
+)
+from rulec.extraction.signals.conduct.lane_changes import indicator_signals, lane_change_signals
+from rulec.extraction.signals.map import crossing_signals, lanes_ahead
+from rulec.extraction.signals.participants import (
+    following_signals,
+    participant_conduct,
+    participant_signals,
+)
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import HEADINGS, Light, Weather
 from support.builders.drive_contexts import along, context_of, steady
@@ -21,6 +27,7 @@ from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.defined_words import defined
 from support.generators.random_recordings import lanes
 from support.signal_arrays import said, unknown_in, values_of
+from support.words import words_of
 
 SIMULATED = ("arrivals", "light", "YIELD")
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
@@ -57,15 +64,15 @@ def car(*places, **more):
 
 def test_who_moves_against_its_heading_drives_backwards():
     backs = car(*((100 - 2 * k, 0.0) for k in range(5)), speed=-4)
-    assert told(manoeuvre_signals, "reversing", two_way(), backs) == "TTTTT"
+    assert told(words_of(manoeuvre_signals), "reversing", two_way(), backs) == "TTTTT"
     # 2 m in all, or what the file says has stood: a box drifts
     drifts = car(*((100 - k / 2, 0.0) for k in range(5)), speed=-1)
-    assert told(manoeuvre_signals, "reversing", two_way(), drifts) == "?????"
+    assert told(words_of(manoeuvre_signals), "reversing", two_way(), drifts) == "?????"
     stood = car(*((100 - 2 * k, 0.0) for k in range(5)), speed=0)
-    assert told(manoeuvre_signals, "reversing", two_way(), stood) == "?????"
+    assert told(words_of(manoeuvre_signals), "reversing", two_way(), stood) == "?????"
     # What counts is the mean over a second, which is 2 m/s backwards before it has begun
     to_and_fro = car((100, 0), (102, 0), (104, 0), (104, 0), (102, 0), (100, 0), (98, 0), speed=4)
-    assert told(manoeuvre_signals, "reversing", two_way(), to_and_fro) == "FFFTTTT"
+    assert told(words_of(manoeuvre_signals), "reversing", two_way(), to_and_fro) == "FFFTTTT"
 
 
 @pytest.mark.parametrize(
@@ -88,7 +95,7 @@ def test_who_comes_back_nowhere_does_not_drive_backwards(xs, expected):
     states = {k: replace(state, speed=float(mps[k])) for k, state in body.states.items()}
     found = recording(two_way(), [replace(body, states=states)])
     found = replace(found, name="USA_Lanker-1", complete=frozenset({HEADINGS}))
-    signals = manoeuvre_signals(context_of(found))
+    signals = words_of(manoeuvre_signals)(context_of(found))
     values = np.where(said(signals, "reversing"), "T", "F")
     unknown = unknown_in(signals, "reversing")
     assert "".join(np.where(unknown, "?", values).ravel().tolist()) == expected
@@ -96,10 +103,12 @@ def test_who_comes_back_nowhere_does_not_drive_backwards(xs, expected):
 
 def test_who_moves_along_its_lane_by_headings_that_are_made_of_places_drives_forwards():
     on = steady(7, 50, 0)
-    assert told(manoeuvre_signals, "reversing", two_way(), on) == "FFFF"
-    assert told(manoeuvre_signals, "reversing", two_way(), on, complete=SIMULATED) == "FFFF"
+    assert told(words_of(manoeuvre_signals), "reversing", two_way(), on) == "FFFF"
+    assert (
+        told(words_of(manoeuvre_signals), "reversing", two_way(), on, complete=SIMULATED) == "FFFF"
+    )
     measured = car((50, 0), (55, 0.2), (60, 0.1), (65, 0))
-    assert told(manoeuvre_signals, "reversing", two_way(), measured) == "FFFF"
+    assert told(words_of(manoeuvre_signals), "reversing", two_way(), measured) == "FFFF"
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
@@ -109,7 +118,7 @@ def test_who_moves_along_its_lane_by_headings_that_are_made_of_places_drives_for
 def test_whose_side_of_a_two_way_road(y, expected, side):
     # The middle of the road is at y = 2 m, and a side has been left 0.3 m beyond it
     ego = steady(7, 50, y)
-    assert told(manoeuvre_signals, "driving_side", two_way(), ego, side=side) == expected
+    assert told(words_of(manoeuvre_signals), "driving_side", two_way(), ego, side=side) == expected
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
@@ -126,7 +135,7 @@ def test_whose_side_of_a_two_way_road(y, expected, side):
 )
 def test_only_when_one_goes_over_the_middle_is_in_doubt(ys, expected, side):
     ego = car(*((50.0 + 10 * k, y) for k, y in enumerate(ys)), heading=0.0)
-    assert told(manoeuvre_signals, "driving_side", two_way(), ego, side=side) == expected
+    assert told(words_of(manoeuvre_signals), "driving_side", two_way(), ego, side=side) == expected
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
@@ -146,7 +155,7 @@ def test_only_when_one_goes_over_the_middle_is_in_doubt(ys, expected, side):
 )
 def test_who_goes_over_the_middle_is_in_two_lanes(ys, expected, side):
     ego = car(*((50.0 + 10 * k, y) for k, y in enumerate(ys)), heading=0.0)
-    assert told(ego_signals, "straddling", two_way(), ego, side=side) == expected
+    assert told(words_of(ego_signals), "straddling", two_way(), ego, side=side) == expected
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
@@ -157,9 +166,11 @@ def test_who_goes_over_the_middle_by_places_known_badly_is_in_two_lanes(side):
     """
     ys = (0, 1.6, 2.4, 2.9, 3.6, 3.6, 0, 0)
     ego = car(*((50.0 + 10 * k, y) for k, y in enumerate(ys)), heading=0.0)
-    sides = told(manoeuvre_signals, "driving_side", two_way(), ego, side=side, place_error_m=0.6)
+    sides = told(
+        words_of(manoeuvre_signals), "driving_side", two_way(), ego, side=side, place_error_m=0.6
+    )
     assert sides[4:6] == "TT"
-    found = told(ego_signals, "straddling", two_way(), ego, side=side, place_error_m=0.6)
+    found = told(words_of(ego_signals), "straddling", two_way(), ego, side=side, place_error_m=0.6)
     assert found == "FTTFTFTF"
 
 
@@ -167,10 +178,12 @@ def test_sides_that_are_nobody_s():
     # One way, not told, and where ego crosses the other half to somewhere
     ego = steady(7, 50, 2.4)
     alone = [straight(1, 0, 300)]
-    assert told(manoeuvre_signals, "driving_side", alone, ego, complete=SIMULATED) == "FFFF"
-    assert told(manoeuvre_signals, "driving_side", alone, ego) == "????"
+    assert (
+        told(words_of(manoeuvre_signals), "driving_side", alone, ego, complete=SIMULATED) == "FFFF"
+    )
+    assert told(words_of(manoeuvre_signals), "driving_side", alone, ego) == "????"
     off = car(*((50 + k, 1 + 2 * k) for k in range(4)), heading=np.arctan(2))
-    assert told(manoeuvre_signals, "driving_side", two_way(), off) == "FFFF"
+    assert told(words_of(manoeuvre_signals), "driving_side", two_way(), off) == "FFFF"
 
 
 def test_the_other_side_of_a_junction_is_passed_by_who_turns():
@@ -182,7 +195,7 @@ def test_the_other_side_of_a_junction_is_passed_by_who_turns():
         lanelet(5, [(300, 4), (120, 4)]),
     ]
     ego = steady(7, 70, 3, steps=12)
-    found = told(manoeuvre_signals, "driving_side", road, ego, route=("1", "3", "4"))
+    found = told(words_of(manoeuvre_signals), "driving_side", road, ego, route=("1", "3", "4"))
     # From 15 m before to 15 m behind it: fronts up to 85, rears from 135
     assert found == "TTTFFFFFFFFF"
 
@@ -204,7 +217,7 @@ def turning_round():
 
 
 def test_who_turns_round_on_the_road():
-    found = told(manoeuvre_signals, "u_turn", [straight(1, 0, 300)], turning_round())
+    found = told(words_of(manoeuvre_signals), "u_turn", [straight(1, 0, 300)], turning_round())
     assert found[:10] == "F" * 10
     # From 30° to 150° across, six degrees a state
     assert found[16:34] == "T" * 18
@@ -218,18 +231,34 @@ def test_who_turns_round_in_a_junction_or_where_the_road_does():
         straight(3, 60, 300, predecessors=(2,)),
         lanelet(4, [(52, -20), (52, 20)], **INSIDE),
     ]
-    found = told(manoeuvre_signals, "u_turn", inside, turning_round(), route=("1", "2", "3"))
+    found = told(
+        words_of(manoeuvre_signals), "u_turn", inside, turning_round(), route=("1", "2", "3")
+    )
     assert set(found) == {"F"}
     line = [(x, y) for x, y, _ in [(0, 0, 0), *arc(50, 5, 5, -90, 90), (0, 10, 0)]]
-    assert set(told(manoeuvre_signals, "u_turn", [lanelet(1, line)], turning_round())) == {"F"}
+    assert set(
+        told(words_of(manoeuvre_signals), "u_turn", [lanelet(1, line)], turning_round())
+    ) == {"F"}
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
 def test_who_turns_round_over_the_next_lane_may_have_changed_to_none(side):
-    found = told(lane_change_signals, "lane_change", lanes(2), turning_round(), side=side)
+    found = told(
+        words_of(lane_change_signals, indicator_signals),
+        "lane_change",
+        lanes(2),
+        turning_round(),
+        side=side,
+    )
     assert (found.count("?"), set(found)) == (1, {"F", "?"})
     changes = car(*((20.0 + 3 * k, 0.4 * k) for k in range(11)))
-    found = told(lane_change_signals, "lane_change", lanes(2), changes, side=side)
+    found = told(
+        words_of(lane_change_signals, indicator_signals),
+        "lane_change",
+        lanes(2),
+        changes,
+        side=side,
+    )
     assert (found.count("T"), set(found)) == (1, {"F", "T"})
 
 
@@ -239,14 +268,18 @@ def beside_the_road(*more, waits=6):
 
 
 def test_who_sets_off_from_beside_the_road():
-    found = told(manoeuvre_signals, "joins_road", two_way(), beside_the_road((65, 0), (70, 0)))
+    found = told(
+        words_of(manoeuvre_signals), "joins_road", two_way(), beside_the_road((65, 0), (70, 0))
+    )
     # From when it moves until its middle is across the edge
     assert found == "FFFFFTTTFFFF"
-    assert set(told(manoeuvre_signals, "joins_road", two_way(), steady(7, 50, 0))) == {"F"}
+    assert set(told(words_of(manoeuvre_signals), "joins_road", two_way(), steady(7, 50, 0))) == {
+        "F"
+    }
     # It came from beside the road, perhaps from one that the map leaves out
     comes = car((44, -8), (46, -6), (48, -4), (50, -2.5), (53, -1), (57, 0), (62, 0))
-    assert "?" in told(manoeuvre_signals, "joins_road", two_way(), comes)
-    assert "T" not in told(manoeuvre_signals, "joins_road", two_way(), comes)
+    assert "?" in told(words_of(manoeuvre_signals), "joins_road", two_way(), comes)
+    assert "T" not in told(words_of(manoeuvre_signals), "joins_road", two_way(), comes)
 
 
 def test_who_stands_across_on_its_way_round_joins_no_road():
@@ -262,7 +295,7 @@ def test_who_stands_across_on_its_way_round_joins_no_road():
         states={k: body.states[k] for k, body in enumerate(bodies)},
         outlines={k: body.outlines[k] for k, body in enumerate(bodies)},
     )
-    found = told(manoeuvre_signals, "joins_road", two_way(), ego)
+    found = told(words_of(manoeuvre_signals), "joins_road", two_way(), ego)
     assert ("T" in found, "?" in found) == (False, True)
 
 
@@ -282,7 +315,9 @@ def cause(*others, road=LONG, complete=SIMULATED, behind_m=20, route=("1",)):
     """Is there a cause to brake, for ego and one behind it that does as ego does?"""
     follower = vehicle(6, {k: (x - behind_m, y) for k, (x, y) in enumerate(BRAKES)})
     found = [car(*BRAKES), follower, *others]
-    return told(reason_signals, "cause_to_brake", road, *found, complete=complete, route=route)
+    return told(
+        words_of(reason_signals), "cause_to_brake", road, *found, complete=complete, route=route
+    )
 
 
 def test_nothing_makes_ego_brake():
@@ -366,7 +401,12 @@ def test_one_ahead_is_a_reason_for_who_would_run_into_it(leader, expected):
 def test_the_map_may_make_ego_brake(road, expected):
     route = tuple(x.id for x in road)
     found = told(
-        reason_signals, "cause_to_brake", road, car(*BRAKES), complete=SIMULATED, route=route
+        words_of(reason_signals),
+        "cause_to_brake",
+        road,
+        car(*BRAKES),
+        complete=SIMULATED,
+        route=route,
     )
     assert found[:6] == expected
 
@@ -380,7 +420,12 @@ def test_who_has_just_braked_for_a_lower_limit_still_seems_to_brake_hard():
     follower = vehicle(6, {k: (x - 20, y) for k, (x, y) in enumerate(BRAKES)})
     both = (car(*BRAKES), follower)
     found = told(
-        reason_signals, "cause_to_brake", lower, *both, complete=SIMULATED, route=("1", "2")
+        words_of(reason_signals),
+        "cause_to_brake",
+        lower,
+        *both,
+        complete=SIMULATED,
+        route=("1", "2"),
     )
     assert found[:8] == "TTTT?FFF"
 
@@ -467,14 +512,18 @@ def test_who_comes_to_a_lane_that_joins_others_may_brake_for_a_gap():
         straight(2, 110, 1900, predecessors=(1,), types=frozenset({"accessRamp"})),
     ]
     ego = car(*BRAKES)
-    found = told(reason_signals, "cause_to_brake", ramp, ego, complete=SIMULATED, route=("1", "2"))
+    found = told(
+        words_of(reason_signals), "cause_to_brake", ramp, ego, complete=SIMULATED, route=("1", "2")
+    )
     # At 20 m/s it looks ahead for 3 s, 50 m and 20 m
     assert found[:10] == "?" * 10
     far = [
         replace(ramp[0], types=frozenset({"accessRamp"})),
         straight(2, 110, 1900, predecessors=(1,)),
     ]
-    found = told(reason_signals, "cause_to_brake", far, ego, complete=SIMULATED, route=("1", "2"))
+    found = told(
+        words_of(reason_signals), "cause_to_brake", far, ego, complete=SIMULATED, route=("1", "2")
+    )
     assert found[:10] == "?" * 10
     assert found[30:40] == "F" * 10
 
@@ -488,7 +537,7 @@ def test_who_has_waited_needs_a_moment_to_get_going():
     ego = steady(7, 50, 0, 0, 80)
     ego = replace(ego, lamps=dict.fromkeys(range(80), frozenset()), shows=shows)
     ahead = vehicle(8, {k: (60 + 10 * max(k - 10, 0), 0) for k in range(80)})
-    found = told(reason_signals, "cause_to_brake", LONG, ego, ahead, complete=SIMULATED)
+    found = told(words_of(reason_signals), "cause_to_brake", LONG, ego, ahead, complete=SIMULATED)
     gone = found.index("?")
     assert found[:gone] == "T" * gone
     assert found[gone:60] == "?" * 10 + "F" * (50 - gone)
@@ -500,7 +549,7 @@ def test_who_drives_on_later_has_not_broken_down(fast, expected):
     speeds = [*np.linspace(20, 0, 9), *[0.0] * 16, *np.linspace(0, fast, 16), *[fast] * 30]
     x = 50 + np.concatenate(([0.0], np.cumsum(np.array(speeds[:-1]) / 2)))
     ego = vehicle(7, {k: (place, 0) for k, place in enumerate(x)})
-    found = told(reason_signals, "cause_to_brake", LONG, ego, complete=SIMULATED)
+    found = told(words_of(reason_signals), "cause_to_brake", LONG, ego, complete=SIMULATED)
     assert set(found[9:24]) == {expected}
 
 
@@ -518,7 +567,7 @@ def test_who_stands_before_a_zebra_crossing_for_nobody_has_no_cause(walker_y, co
     places = {k: (float(x[10]), walker_y) for k in range(len(x))}
     walker = vehicle(8, places, "pedestrian", length=0.5, width=0.5)
     road = [*LONG, crossing]
-    found = told(reason_signals, "cause_to_brake", road, ego, walker, complete=complete)
+    found = told(words_of(reason_signals), "cause_to_brake", road, ego, walker, complete=complete)
     # After 3 s of standing, in which somebody may have been about to come, and 5 s more
     assert "".join(found[k] for k in (14, 26, 38)) == expected
 
@@ -542,7 +591,7 @@ def test_who_stands_in_a_junction_has_no_cause_in_who_waits_behind_it(other, exp
     ahead, left, turned = other
     places = dict.fromkeys(range(len(x)), (float(x[10]) + ahead, left))
     waits = vehicle(8, places, speed=0.0, heading=np.radians(turned))
-    found = told(reason_signals, "cause_to_brake", road, ego, waits, complete=SIMULATED)
+    found = told(words_of(reason_signals), "cause_to_brake", road, ego, waits, complete=SIMULATED)
     assert "".join(found[k] for k in (15, 25, 38)) == expected
 
 
@@ -554,7 +603,7 @@ def test_who_stands_when_it_is_first_seen_may_have_waited_until_then(hazards_tol
     if hazards_told:
         dark = dict.fromkeys(range(len(x)), frozenset())
         ego = replace(ego, lamps=dark, shows=frozenset({"hazard_lights"}))
-    found = told(reason_signals, "cause_to_brake", LONG, ego, complete=SIMULATED)
+    found = told(words_of(reason_signals), "cause_to_brake", LONG, ego, complete=SIMULATED)
     # It has the time to get going after 5 s
     assert (set(found[:11]), set(found[11:28])) == ({"?"}, {"F"})
 
@@ -566,7 +615,7 @@ def test_who_stands_before_it_backs_may_have_to(back, expected):
     speeds = [*np.linspace(20, 0, 9), *[0.0] * 8, *later]
     x = 50 + np.concatenate(([0.0], np.cumsum(np.array(speeds[:-1]) / 2)))
     ego = vehicle(7, {k: (place, 0) for k, place in enumerate(x)}, speed=10.0)
-    found = told(reason_signals, "cause_to_brake", LONG, ego, complete=SIMULATED)
+    found = told(words_of(reason_signals), "cause_to_brake", LONG, ego, complete=SIMULATED)
     assert set(found[10:16]) == {expected}
 
 
@@ -629,7 +678,13 @@ def turns_before(start, mps, steps=40, kind="bicycle", y=-2.5, **thresholds):
     rider = vehicle(8, {k: (start + mps * k / 2, y) for k in range(steps)}, kind, length=2, width=1)
     route = ("1", "3", "5")
     return told(
-        turning_conflicts, "turns_in_way_of", crossroads(), ego, rider, route=route, **thresholds
+        words_of(turning_conflicts),
+        "turns_in_way_of",
+        crossroads(),
+        ego,
+        rider,
+        route=route,
+        **thresholds,
     )
 
 
@@ -668,7 +723,9 @@ def test_who_rides_behind_one_that_turns_back_is_not_beside_it():
     ego = along(7, np.array([(0, 0), *turn, back]), 96.5 + np.arange(40))
     rider = steady(8, 70, 0, 5, 40, kind="bicycle", length=1.8, width=0.6)
     route = ("1", "3", "5")
-    assert set(told(turning_conflicts, "turns_in_way_of", lanes, ego, rider, route=route)) == {"F"}
+    assert set(
+        told(words_of(turning_conflicts), "turns_in_way_of", lanes, ego, rider, route=route)
+    ) == {"F"}
 
 
 @pytest.mark.parametrize(
@@ -693,7 +750,12 @@ def test_a_rider_who_is_lost_from_sight_before_it_gets_there():
     ego = along(7, np.array([(0, 0), *turn, (114, -200)]), 80 + 2.5 * np.arange(40))
     rider = vehicle(8, {k: (75 + 2.5 * k, -2.5) for k in range(9)}, "bicycle", length=2, width=1)
     lost = told(
-        turning_conflicts, "turns_in_way_of", crossroads(), ego, rider, route=("1", "3", "5")
+        words_of(turning_conflicts),
+        "turns_in_way_of",
+        crossroads(),
+        ego,
+        rider,
+        route=("1", "3", "5"),
     )
     assert "?" in lost
     assert "T" not in lost
@@ -703,13 +765,26 @@ def test_a_rider_who_is_lost_from_sight_before_it_gets_there():
 @pytest.mark.parametrize(("y", "expected"), [(-2.6, "T"), (-2.02, "?"), (-1.5, "F"), (1.5, "F")])
 def test_who_is_beside_the_road_is_on_its_shoulder(y, expected, side):
     stands = steady(8, 80, y, speed=0)
-    found = told(participant_signals, "on_shoulder", two_way(), steady(7, 50, 0), stands, side=side)
+    found = told(
+        words_of(participant_signals, participant_conduct, lanes_ahead, following_signals),
+        "on_shoulder",
+        two_way(),
+        steady(7, 50, 0),
+        stands,
+        side=side,
+    )
     assert set(found) == {expected}
 
 
 def test_who_waits_in_a_side_road_is_not_on_the_shoulder():
     waits = steady(8, 80, -3, speed=0, heading=np.pi / 2)
-    found = told(participant_signals, "on_shoulder", two_way(), steady(7, 50, 0), waits)
+    found = told(
+        words_of(participant_signals, participant_conduct, lanes_ahead, following_signals),
+        "on_shoulder",
+        two_way(),
+        steady(7, 50, 0),
+        waits,
+    )
     assert set(found) == {"F"}
 
 
@@ -732,7 +807,9 @@ def test_who_stands_before_a_junction_without_room_behind_it_has_a_cause(ego_x, 
         straight(3, 120, 900, predecessors=(2,)),
     ]
     ego, queue = car(*[(ego_x, 0)] * 20), steady(8, queue_x, 0, 0, 20)
-    found = told(reason_signals, "cause_to_brake", lanes, ego, queue, route=("1", "2", "3"))
+    found = told(
+        words_of(reason_signals), "cause_to_brake", lanes, ego, queue, route=("1", "2", "3")
+    )
     assert set(found) == {expected}
 
 
@@ -742,8 +819,8 @@ def test_the_nearest_to_the_crossing():
     near, far = steady(8, 125, 0, speed=5), steady(8, 115, 0, speed=5)
     ahead = steady(9, 120, 0, speed=5)
     nearest = "nearest_to_crossing"
-    assert told(crossing_signals, nearest, road, ego, near, ahead) == "TTTT"
-    assert told(crossing_signals, nearest, road, ego, far, ahead) == "FFFF"
+    assert told(words_of(crossing_signals), nearest, road, ego, near, ahead) == "TTTT"
+    assert told(words_of(crossing_signals), nearest, road, ego, far, ahead) == "FFFF"
 
 
 BEAMS = frozenset({"dipped_beam", "main_beam", "rear_fog_lamp"})
@@ -762,7 +839,7 @@ BEAMS = frozenset({"dipped_beam", "main_beam", "rear_fog_lamp"})
 def test_the_brightest_of_ego_s_lamps(lit, night, expected):
     ego = replace(steady(7, 50, 0), shows=BEAMS, lamps={k: frozenset(lit) for k in range(3)})
     found = replace(recording(two_way(), [ego]), weather=Weather(night=night))
-    signals = lamp_signals(context_of(found))
+    signals = words_of(lamp_signals)(context_of(found))
     assert unknown_in(signals, "headlamps").tolist() == [*([expected is None] * 3), True]
     assert expected in (None, said(signals, "headlamps")[0])
     assert values_of(signals, "rear_fog_lamps").tolist() == [*(["rear_fog_lamp" in lit] * 3), False]
@@ -787,7 +864,7 @@ def test_ego_is_on_call_while_its_blue_lights_are_on(kind, blue, expected):
     if blue is not None:
         lamps = {k: frozenset({"blue_light"} if k in blue else ()) for k in range(8)}
         ego = replace(ego, shows=frozenset({"blue_light"}), lamps=lamps)
-    assert told(lamp_signals, "ego_on_call", two_way(), ego) == expected
+    assert told(words_of(lamp_signals), "ego_on_call", two_way(), ego) == expected
 
 
 @pytest.mark.parametrize("step_s", [0.1, 0.25, 0.5])

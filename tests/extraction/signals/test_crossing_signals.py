@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.crossing_signals import crossing_signals
+from rulec.extraction.signals.map import crossing_signals
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 from support.signal_arrays import possible_in, said, unknown_in, values_of
+from support.words import words_of
 
 ZEBRA = lanelet(9, [(60, -8), (60, 8)], width=4, types=frozenset({"crosswalk"}))
 
@@ -23,7 +24,7 @@ def use(x, y, along=0.0, across=0.0, **thresholds):
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     ego = steady(7, 20, 0, steps=2)
     context = context_of(recording([*lanes(1), ZEBRA], [ego, walker]), **thresholds)
-    return str(said(crossing_signals(context), "crossing_use")[0, 0])
+    return str(said(words_of(crossing_signals)(context), "crossing_use")[0, 0])
 
 
 @pytest.mark.parametrize(
@@ -60,7 +61,7 @@ def test_who_walks_along_the_far_edge_of_the_road_does_not_cross_it(along, acros
     places = {k: (60 + along * 0.5 * k, 5.9 + across * 0.5 * k) for k in range(2)}
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     found = recording([*road, ZEBRA], [steady(7, 20, 0, steps=2), walker])
-    signals = crossing_signals(context_of(found, ("1",)))
+    signals = words_of(crossing_signals)(context_of(found, ("1",)))
     assert str(said(signals, "crossing_use")[0, 0]) == expected
 
 
@@ -82,7 +83,7 @@ def test_one_comes_to_the_lanes_that_there_are_at_the_crossing(y, across, expect
     places = {k: (60, y + across * 0.5 * k) for k in range(2)}
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     found = recording([*road, ZEBRA], [steady(7, 20, 0, steps=2), walker])
-    signals = crossing_signals(context_of(found, ("1", "2")))
+    signals = words_of(crossing_signals)(context_of(found, ("1", "2")))
     assert str(said(signals, "crossing_use")[0, 0]) == expected
 
 
@@ -102,7 +103,7 @@ def test_who_has_crossed_egos_lane_is_let_across(y, across, expected):
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     beside = steady(9, 50, 4, speed=0, steps=2)
     found = recording([*lanes(2), ZEBRA], [steady(7, 20, 0, steps=2), walker, beside])
-    signals = crossing_signals(context_of(found))
+    signals = words_of(crossing_signals)(context_of(found))
     assert str(said(signals, "crossing_use")[0, 0]) == expected
     # Whoever stands in the next lane stands for it all the same
     assert values_of(signals, "stopped_for_pedestrian")[1, 0]
@@ -115,7 +116,7 @@ def test_who_has_crossed_egos_lane_has_done_so_while_it_turns_along_the_road():
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     ego = steady(7, 0, 0, speed=2, steps=60, step_s=0.1)
     context = context_of(recording([*lanes(2), ZEBRA], [ego, walker], step_s=0.1))
-    uses = said(crossing_signals(context), "crossing_use")[0]
+    uses = said(words_of(crossing_signals)(context), "crossing_use")[0]
     assert uses[5] == "on_crossing"
     assert set(uses[17:28]) == {"not_crossing"}
     # Who stays there for longer than a second may come back
@@ -133,7 +134,7 @@ def test_who_has_crossed_egos_lane_is_back_in_it_with_its_middle(jumps_to, expec
     walker = vehicle(8, {k: (60, y[k]) for k in range(40)}, "pedestrian", length=0.4, width=0.4)
     ego = steady(7, 0, 0, speed=2, steps=40, step_s=0.1)
     context = context_of(recording([*lanes(2), ZEBRA], [ego, walker], step_s=0.1))
-    uses = said(crossing_signals(context), "crossing_use")[0]
+    uses = said(words_of(crossing_signals)(context), "crossing_use")[0]
     assert uses[5] == "on_crossing"
     assert [uses[k] for k in (19, 21, 25)] == ["not_crossing", expected, "not_crossing"]
 
@@ -146,7 +147,7 @@ def test_who_turns_away_from_those_who_have_crossed_its_lane_is_not_in_their_way
     walker = vehicle(8, {0: (60, 2.5), 1: (60, 3.25)}, "pedestrian", length=0.4, width=0.4)
     ego = vehicle(7, {0: (54, 1.6), 1: (54.5, 1.6 + 0.2 * turn)}, heading=-0.6, speed=1.0)
     found = recording([*lanes(2), ZEBRA], [ego, walker])
-    signals = crossing_signals(context_of(found))
+    signals = words_of(crossing_signals)(context_of(found))
     assert str(said(signals, "crossing_use")[0, 0]) == expected
 
 
@@ -167,7 +168,7 @@ def stopped(x, speed=0.0, walks=True):
     walker = vehicle(8, {0: (60, 0), 1: (60, 0)}, "pedestrian", length=0.4, width=0.4)
     others = [steady(9, x, 0, speed=speed, steps=2)] + ([walker] if walks else [])
     context = context_of(recording([*lanes(1), ZEBRA], [steady(7, 20, 0, steps=2), *others]))
-    signals = crossing_signals(context)
+    signals = words_of(crossing_signals)(context)
     assert signals.only["stopped_for_pedestrian"].tolist() == [True, False][: len(others)]
     return bool(values_of(signals, "stopped_for_pedestrian")[0, 0])
 
@@ -177,7 +178,7 @@ def test_who_stands_behind_another_one_may_have_stopped_for_that_one():
     first, second = steady(9, 55, 0, speed=0, steps=2), steady(10, 50, 0, speed=0, steps=2)
     beside = steady(11, 50, 4, speed=0, steps=2)
     bodies = [steady(7, 20, 0, steps=2), first, second, beside, walker]
-    signals = crossing_signals(context_of(recording([*lanes(2), ZEBRA], bodies)))
+    signals = words_of(crossing_signals)(context_of(recording([*lanes(2), ZEBRA], bodies)))
     assert possible_in(signals, "stopped_for_pedestrian")[:, 0].tolist() == [
         True,
         True,
@@ -194,7 +195,7 @@ def test_at_a_crossing_with_lights_who_waits_at_the_kerb_waits_for_these(y, stop
     walker = vehicle(8, {0: (60, y), 1: (60, y)}, "pedestrian", length=0.4, width=0.4)
     bodies = [steady(7, 20, 0, steps=2), steady(9, 55, 0, speed=0, steps=2), walker]
     road = recording([*lanes(1), lit], bodies)
-    signals = crossing_signals(context_of(replace(road, complete=frozenset({"light"}))))
+    signals = words_of(crossing_signals)(context_of(replace(road, complete=frozenset({"light"}))))
     assert bool(values_of(signals, "stopped_for_pedestrian")[0, 0]) == stopped_for
 
 
@@ -217,7 +218,9 @@ def over_the_crossing(comes_s, front=30.0, speed=10.0, states=50):
         steady(7, front - 2, 0, speed=speed, steps=states, step_s=step_s),
         vehicle(8, walker, "pedestrian", length=0.4, width=0.4),
     ]
-    signals = crossing_signals(context_of(recording([*lanes(1), ZEBRA], people, step_s=step_s)))
+    signals = words_of(crossing_signals)(
+        context_of(recording([*lanes(1), ZEBRA], people, step_s=step_s))
+    )
     uses = said(signals, "crossing_use")[0]
     return uses, unknown_in(signals, "crossing_use")[0]
 
@@ -274,7 +277,7 @@ def side_road(walker, stops_at=None, more=(), x=12.0, **limits):
     body = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     found = recording(road, [along(7, line, way), body])
     context = context_of(found, ("1", "2", "3"), **limits)
-    found = crossing_signals(context, frozenset({"crosses_side_road"}))
+    found = words_of(crossing_signals)(context, frozenset({"crosses_side_road"}))
     columns = [of(found, "crosses_side_road")[0] for of in (values_of, unknown_in)]
     told = zip(*columns, strict=True)
     return "".join("?" if dark else "FT"[int(flag)] for flag, dark in told)
@@ -388,7 +391,7 @@ def test_who_gets_to_egos_lane_long_after_ego_may_not_have_to_be_let_across():
         walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
         ego = steady(7, 54, 0, speed=10.0, steps=2, step_s=0.1)
         road = recording([*lanes(4), ZEBRA], [ego, walker], step_s=0.1)
-        found = crossing_signals(context_of(road))
+        found = words_of(crossing_signals)(context_of(road))
         assert said(found, "crossing_use")[0, 0] == "on_crossing"
         assert unknown_in(found, "crossing_use")[0, 0] == (not known)
 

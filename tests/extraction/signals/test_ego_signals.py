@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rulec import build_lanelet, build_participant, build_recording, verify_recording
-from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals import ego_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.defined_words import defined
@@ -19,11 +19,12 @@ from support.signal_arrays import (
     unknown_in,
     values_of,
 )
+from support.words import words_of
 
 
 def world(body, count=3, route=("1",), side="right", **thresholds):
     context = context_of(recording(lanes(count), [body]), route, side, **thresholds)
-    signals = ego_signals(context)
+    signals = words_of(ego_signals)(context)
     return {name: possibly_said(signals, name) for name in signals.world}
 
 
@@ -125,7 +126,7 @@ def test_lanes_count_where_most_are_beside_ego():
         lanelet(5, [(100, 4), (110, 8), (112, 30)], predecessors=(4,)),
     ]
     ego = vehicle(7, {k: (x, 0) for k, x in enumerate((90, 101, 103, 119, 130))})
-    found = ego_signals(context_of(recording(road, [ego]), ("1", "2", "3")))
+    found = words_of(ego_signals)(context_of(recording(road, [ego]), ("1", "2", "3")))
     one, two = (texts_of(found, "lanes").index(word) for word in ("one_lane", "two_lanes"))
     assert values_of(found, "lanes").tolist() == [two, two, one, one, one]
 
@@ -141,7 +142,7 @@ def test_a_lane_that_forks_hides_none_beside_it(x):
         lanelet(5, [(100, 4), (120, 8), (300, 8)], right_of=3, predecessors=(4,)),
     ]
     ego = vehicle(7, {0: (x, 0.0), 1: (x, 0.0)})
-    found = ego_signals(context_of(recording(road, [ego]), ("1", "2")))
+    found = words_of(ego_signals)(context_of(recording(road, [ego]), ("1", "2")))
     assert texts_of(found, "lanes")[values_of(found, "lanes")[0]] != "one_lane"
 
 
@@ -150,7 +151,7 @@ def test_a_hard_shoulder_is_no_lane_to_count(y, lane):
     """It lies along y = 0, right of two lanes."""
     shoulder, *driven = lanes(3)
     road = [replace(shoulder, types=frozenset({"shoulder"})), *driven]
-    found = ego_signals(context_of(recording(road, [steady(7, 0, y)])))
+    found = words_of(ego_signals)(context_of(recording(road, [steady(7, 0, y)])))
     assert (set(said(found, "lane")), set(said(found, "lanes"))) == ({lane}, {"two_lanes"})
 
 
@@ -169,7 +170,7 @@ def test_beyond_a_shoulder_there_is_another_road(y, kind, lane, count):
     road = lanes(4)
     road[1] = replace(road[1], types=frozenset({kind}))
     context = context_of(recording(road, [steady(7, 0, y)]), (str(1 + y // 4),))
-    signals = ego_signals(context)
+    signals = words_of(ego_signals)(context)
     assert set(said(signals, "lane").tolist()) == {lane}
     assert set(said(signals, "lanes").tolist()) == {count}
 
@@ -209,7 +210,7 @@ def test_a_lane_is_left_only_well_beyond_its_mark():
 def test_acceleration_has_its_bounds():
     # From 20 to 14 m/s in 1.5 s; those of the middle known to 0.1 m/s: 0.14 m/s² for two of them
     body = drive((0, 0), (10, 0), (19, 0), (27, 0), (34, 0))
-    found = ego_signals(context_of(recording(lanes(1), [body])))
+    found = words_of(ego_signals)(context_of(recording(lanes(1), [body])))
     assert values_of(found, "acceleration").tolist() == [-4.0] * 5
     low, high = bounds_of(found, "acceleration")
     assert (low[2], high[2]) == (-4.15, -3.85)
@@ -238,7 +239,7 @@ def test_lanes_two_or_more_from_the_far_one_are_apart_from_it(y, right_hand, lef
 
 def test_whether_the_far_lane_is_apart_is_open_beside_a_mark():
     # 10 cm beyond the mark between the second and the third of four lanes
-    signals = ego_signals(context_of(recording(lanes(4), [steady(7, 0, 6.1)])))
+    signals = words_of(ego_signals)(context_of(recording(lanes(4), [steady(7, 0, 6.1)])))
     assert unknown_in(signals, "apart_from_far_lane").tolist() == [True] * 4
 
 
@@ -252,6 +253,6 @@ def test_beside_a_lane_that_ends_nobody_knows_which_one_is_at_the_kerb(end, unkn
         straight(5, end, 1600, 8, predecessors=(3,), right_of=4),
     ]
     body = vehicle(7, dict.fromkeys(range(3), (400 if end == 800 else 100, 4)))
-    signals = ego_signals(context_of(recording(road, [body]), ("2", "4")))
+    signals = words_of(ego_signals)(context_of(recording(road, [body]), ("2", "4")))
     assert values_of(signals, "lane").tolist() == [1] * 3
     assert unknown_in(signals, "lane").tolist() == [unknown] * 3

@@ -5,19 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
-from rulec.extraction.signals.flow_signals import flow_signals
+from rulec.extraction.signals import flow_signals
+from rulec.extraction.signals.conduct import being_overtaken, overtaking_signals
 from support.builders.drive_contexts import context_of, line, steady
 from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
 from support.signal_arrays import letters, possible_in, possibly_said, unknown_in, values_of
+from support.words import words_of
 
 
 def first(*others, ego=None, count=2, side="right", route=("1",), **thresholds):
     """The signals in the first state."""
     ego = ego or steady(7, 0, 0)
     context = context_of(recording(lanes(count), [ego, *others]), route, side, **thresholds)
-    signals = flow_signals(context)
+    signals = words_of(flow_signals)(context)
     return {name: bool(possibly_said(signals, name)[0]) for name in signals.world}
 
 
@@ -70,7 +71,7 @@ def test_who_waits_where_no_jam_may_be_is_not_told_to_be_in_one(beside, ahead, t
     start = 10.0 if ahead else -50.0
     others = [steady(30, 10, 4.0, speed=0)] if beside else []
     bodies = [steady(7, 0, 0, speed=0), *line(0, 4, start=start), *others]
-    found = flow_signals(context_of(recording(lanes(2), bodies), ("1",)))
+    found = words_of(flow_signals)(context_of(recording(lanes(2), bodies), ("1",)))
     for word in ("congested", "walking_pace_flow"):
         assert possible_in(found, word)[0]
         assert unknown_in(found, word)[0] == (not told)
@@ -82,7 +83,7 @@ def test_who_waits_where_no_jam_may_be_is_not_told_to_be_in_one(beside, ahead, t
 def test_those_behind_a_cycle_may_be_in_no_jam(x, y, told):
     bodies = [steady(7, 0, 0, speed=5), *line(5, 3), steady(30, 10, 4.0, speed=5)]
     cycle = steady(40, x, y, speed=5, kind="bicycle")
-    found = flow_signals(context_of(recording(lanes(2), [*bodies, cycle]), ("1",)))
+    found = words_of(flow_signals)(context_of(recording(lanes(2), [*bodies, cycle]), ("1",)))
     assert possible_in(found, "congested")[0]
     assert unknown_in(found, "congested")[0] == (not told)
 
@@ -98,7 +99,7 @@ def test_a_line_behind_one_that_drives_freely_may_be_no_jam(lead_mps, beside, to
     others = [steady(31, 10, 4.0, speed=7)] if beside else []
     far = [steady(40 + k, x, 0, speed=7) for k, x in enumerate((150, 165))]
     bodies = [ego, *line(7, 2, start=20.0), leader, *others, *far]
-    found = flow_signals(context_of(recording(lanes(2 if beside else 1), bodies), ("1",)))
+    found = words_of(flow_signals)(context_of(recording(lanes(2 if beside else 1), bodies), ("1",)))
     for word in ("congested", "CONGESTED"):
         assert possible_in(found, word)[0]
         assert unknown_in(found, word)[0] == (not told)
@@ -113,7 +114,7 @@ def test_traffic_that_has_been_slow_for_less_than_10_s_may_be_no_jam():
 
     others = [at(20 + k, 10.0 * (k + 1), 0.0) for k in range(4)]
     bodies = [at(7, 0.0, 0.0), *others, at(30, 10.0, 4.0)]
-    found = flow_signals(context_of(recording(lanes(2), bodies), ("1",)))
+    found = words_of(flow_signals)(context_of(recording(lanes(2), bodies), ("1",)))
     slow, unknown = possible_in(found, "congested"), unknown_in(found, "congested")
     begins = int(np.flatnonzero(slow)[0])
     assert slow[begins:].all()
@@ -121,9 +122,9 @@ def test_traffic_that_has_been_slow_for_less_than_10_s_may_be_no_jam():
     assert np.flatnonzero(unknown).tolist() == list(range(begins, begins + 19))
     # Of a drive that begins in one nobody knows how long it has been there, but where all is known
     jam = recording(lanes(2), [steady(7, 0, 0, 1), *line(1, 4), steady(30, 10, 4, 1)])
-    assert not unknown_in(flow_signals(context_of(jam, ("1",))), "congested").any()
+    assert not unknown_in(words_of(flow_signals)(context_of(jam, ("1",))), "congested").any()
     whole = replace(jam, complete=frozenset({"arrivals"}))
-    assert unknown_in(flow_signals(context_of(whole, ("1",))), "congested").all()
+    assert unknown_in(words_of(flow_signals)(context_of(whole, ("1",))), "congested").all()
 
 
 def test_a_single_one_that_drives_past_a_jam_is_no_flow():
@@ -138,7 +139,7 @@ def test_all_lanes_queue_when_each_has_three_close_vehicles():
     # 6 m of gap in the one lane; in the other 26 m at 10 m/s, where 20 m are allowed
     sparse = line(10, 3, y=4.0, apart=30.0, number=30)
     context = context_of(recording(lanes(2), [steady(7, 0, 0), *line(10, 2), *sparse]), ("1",))
-    assert letters(flow_signals(context), "dense_all_lanes")[0] != "T"
+    assert letters(words_of(flow_signals)(context), "dense_all_lanes")[0] != "T"
     assert first(*line(10, 2), *sparse, queue_headway_s=2.7)["dense_all_lanes"]
 
 
@@ -147,7 +148,7 @@ def test_whom_nobody_is_ahead_of_is_in_no_queue(complete):
     behind = [*line(10, 2, start=-30), *line(10, 3, y=4.0, start=-30, number=30)]
     found = recording(lanes(2), [steady(7, 0, 0), *behind])
     found = replace(found, complete=frozenset({"arrivals"} if complete else ()))
-    signals = flow_signals(context_of(found))
+    signals = words_of(flow_signals)(context_of(found))
     assert not values_of(signals, "dense_all_lanes")[0]
     # Where only some of the traffic is recorded there may be one
     assert unknown_in(signals, "dense_all_lanes")[0] == (not complete)
@@ -157,7 +158,9 @@ def test_whom_nobody_is_ahead_of_is_in_no_queue(complete):
 def test_the_first_one_recorded_of_some_lines_may_be_in_one_on_all_lanes(count, unknown):
     """On ego's lane and the next one cars are behind each other, and on the others nobody is."""
     behind = [*line(10, 2, start=-30), *line(10, 3, y=4.0, start=-30, number=30)]
-    signals = flow_signals(context_of(recording(lanes(count), [steady(7, 0, 0), *behind])))
+    signals = words_of(flow_signals)(
+        context_of(recording(lanes(count), [steady(7, 0, 0), *behind]))
+    )
     assert not values_of(signals, "dense_all_lanes")[0]
     assert unknown_in(signals, "dense_all_lanes")[0] == unknown
 
@@ -169,7 +172,7 @@ def test_who_is_far_behind_the_next_one_leads_too(front, queues, unknown):
     # Vehicles are 4 m long: 21 of 22 m of gap are allowed at 11 m/s, 26 of 33 may be, 35 are not
     behind = [*line(11, 2, start=-30), *line(11, 3, y=4.0, start=-30, number=30)]
     found = recording(lanes(2), [steady(7, 0, 0, speed=11), steady(9, front, 0, speed=11), *behind])
-    signals = flow_signals(context_of(found))
+    signals = words_of(flow_signals)(context_of(found))
     assert values_of(signals, "dense_all_lanes")[0] == queues
     assert unknown_in(signals, "dense_all_lanes")[0] == unknown
 
@@ -197,10 +200,12 @@ def test_gaps_as_long_as_in_a_queue_within_tolerance_tell_nothing(speed, overtak
     """At 11 m/s a gap of 22 m is the longest: those of 22.1 m, known to 0.4 m/s, may be as long."""
     far = [steady(30 + k, 26.1 * k - 3, 4.0, speed=11 if k else speed) for k in range(3)]
     found = recording(lanes(2), [steady(7, 0, 0, speed=11), *line(11, 2), *far])
-    signals = flow_signals(context_of(found))
+    signals = words_of(flow_signals)(context_of(found))
     assert unknown_in(signals, "dense_all_lanes")[0]
     assert unknown_in(signals, "far_lane_queue")[0]
-    overtaken = unknown_in(overtaking_signals(context_of(found)), "being_overtaken")
+    overtaken = unknown_in(
+        words_of(overtaking_signals, being_overtaken)(context_of(found)), "being_overtaken"
+    )
     assert overtaken[0] == overtakes
 
 
@@ -213,7 +218,9 @@ def test_a_lane_between_two_ramps_does_not_decide():
         straight(4, 0, 200, y=-4, left_of=2),
     ]
     found = recording(road, [steady(7, 100, 0), *line(10, 2, start=110.0)])
-    dense = possible_in(flow_signals(context_of(found, ("1", "2", "3"))), "dense_all_lanes")
+    dense = possible_in(
+        words_of(flow_signals)(context_of(found, ("1", "2", "3"))), "dense_all_lanes"
+    )
     assert dense.all()
 
 
@@ -221,7 +228,7 @@ def test_a_lane_between_two_ramps_does_not_decide():
 def test_where_a_world_begins_there_are_no_queues(complete, unknown):
     found = recording([straight(1, 0, 40), straight(2, 0, 40, 4)], [steady(7, 10, 0)])
     found = replace(found, complete=frozenset(complete))
-    signals = flow_signals(context_of(found))
+    signals = words_of(flow_signals)(context_of(found))
     assert unknown_in(signals, "dense_all_lanes")[0] == unknown
     assert not values_of(signals, "dense_all_lanes")[0]
 
@@ -237,7 +244,7 @@ def test_a_lane_too_short_for_a_queue_does_not_decide():
     queue = line(10, 3, start=110.0)
     ego = steady(7, 100, 0)
     found = recording([through, *joined], [ego, *queue])
-    dense = possible_in(flow_signals(context_of(found, ("1", "3"))), "dense_all_lanes")
+    dense = possible_in(words_of(flow_signals)(context_of(found, ("1", "3"))), "dense_all_lanes")
     assert dense[1:].all()
     # A lane that is there all along, without anybody, decides
     assert not first(*line(10, 2))["dense_all_lanes"]
@@ -247,7 +254,7 @@ def test_a_lane_too_short_for_a_queue_does_not_decide():
 def test_the_last_one_behind_queues_may_be_in_them_or_not(behind, unknown):
     """At 10 m/s a gap of 30 m is the longest that some call one of a queue."""
     both = [*line(10, 2), *line(10, 3, y=4.0, number=30), steady(9, behind, 0)]
-    signals = flow_signals(context_of(recording(lanes(2), [steady(7, 0, 0), *both])))
+    signals = words_of(flow_signals)(context_of(recording(lanes(2), [steady(7, 0, 0), *both])))
     assert possible_in(signals, "dense_all_lanes")[0]
     assert unknown_in(signals, "dense_all_lanes")[0] == unknown
 
@@ -265,26 +272,26 @@ def test_a_queue_on_one_lane_of_three_does_not_tell_of_the_others(count, unknown
     if count == 3:
         road[1] = replace(road[1], left_of="6")
     found = recording(road, [steady(7, 100, 0), *line(10, 3, start=110.0), steady(9, 90, 0)])
-    signals = flow_signals(context_of(found, ("1", "3")))
+    signals = words_of(flow_signals)(context_of(found, ("1", "3")))
     assert possible_in(signals, "dense_all_lanes")[2]
     assert unknown_in(signals, "dense_all_lanes")[2] == unknown
 
 
 def test_where_the_map_ends_soon_nothing_is_said_of_queues():
     short = recording([straight(1, 0, 40)], [steady(7, 10, 0)])
-    assert unknown_in(flow_signals(context_of(short)), "dense_all_lanes").all()
+    assert unknown_in(words_of(flow_signals)(context_of(short)), "dense_all_lanes").all()
 
 
 @pytest.mark.parametrize("mps", [25, 36, 45])
 def test_the_faster_ego_is_the_farther_queues_are_looked_for(mps):
     """At 36 m/s three vehicles with 2 s between them take up 231 m, more than 100 m each way."""
     road, ego = [straight(1, -300, 900)], steady(7, 0, 0, speed=mps, steps=4)
-    alone = flow_signals(context_of(recording(road, [ego])))
+    alone = words_of(flow_signals)(context_of(recording(road, [ego])))
     assert not unknown_in(alone, "dense_all_lanes").any()
     assert not values_of(alone, "dense_all_lanes").any()
     apart = 1.4 * mps
     others = [steady(8, -apart, 0, speed=mps, steps=4), steady(9, apart, 0, speed=mps, steps=4)]
-    queue = flow_signals(context_of(recording(road, [ego, *others])))
+    queue = words_of(flow_signals)(context_of(recording(road, [ego, *others])))
     assert values_of(queue, "dense_all_lanes").all()
 
 
@@ -306,6 +313,6 @@ def test_one_queue_where_a_world_begins_is_not_one_on_all_lanes(complete, unknow
     ]
     found = recording(short, [steady(7, 10, 0), *line(10, 2, start=24.0)])
     found = replace(found, complete=frozenset(complete))
-    signals = flow_signals(context_of(found))
+    signals = words_of(flow_signals)(context_of(found))
     assert unknown_in(signals, "dense_all_lanes")[0] == unknown
     assert unknown or not values_of(signals, "dense_all_lanes")[0]

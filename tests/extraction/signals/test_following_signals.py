@@ -10,12 +10,13 @@ from hypothesis import strategies as st
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals.measured_numbers import LONGEST_S
-from rulec.extraction.signals.participants.following_signals import following_signals
+from rulec.extraction.signals.participants import following_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import recording, vehicle
 from support.generators.random_recordings import lanes
 from support.signal_arrays import bounds_of
+from support.words import words_of
 
 MPS, STEP_S, PLACE_M = 10.0, 0.5, 0.05
 GERMAN = machines("de")
@@ -25,7 +26,7 @@ def times(*others, steps=4, **thresholds):
     """At least and at most (s), by state, of the first of the others; ego is at x = 0 first."""
     context = context_of(recording(lanes(2), [steady(7, 0, 0, steps=steps), *others]), **thresholds)
     least, most = map(
-        presence_cells(context).laid, bounds_of(following_signals(context), "ahead_for")
+        presence_cells(context).laid, bounds_of(words_of(following_signals)(context), "ahead_for")
     )
     return least[0].tolist(), most[0].tolist()
 
@@ -83,7 +84,7 @@ def test_who_comes_into_sight_later_was_somewhere_before():
     context = context_of(recording(lanes(2), [ego, steady(8, 162, 0, steps=8)]))
     first = int(np.flatnonzero(context.relevant[0])[0])
     assert first > 0
-    assert bounds_of(following_signals(context), "ahead_for")[1][0] == LONGEST_S
+    assert bounds_of(words_of(following_signals)(context), "ahead_for")[1][0] == LONGEST_S
 
 
 def test_who_stands_beside_or_behind_has_not_been_ahead():

@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.participants.intention_signals import intention_signals
+from rulec.extraction.signals.participants import intention_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 INDICATORS = {"left_indicator", "right_indicator"}
@@ -43,7 +44,7 @@ def told(word, road, *bodies, side="right", complete=(), route=("1", "2", "5")):
     found = replace(recording(road, bodies, step_s=0.5), complete=frozenset(complete))
     if side == "left":
         found = mirrored_recording(found)
-    signals = intention_signals(context_of(found, route, side))
+    signals = words_of(intention_signals)(context_of(found, route, side))
     values = np.where(unknown_in(signals, word), "?", values_of(signals, word)).tolist()
     return values[0] if values and isinstance(values[0], list) else values
 

@@ -4,16 +4,15 @@ from math import cos, radians, sin
 
 import pytest
 
-from rulec.extraction.signals.map.junction_signals import junction_signals
-from rulec.extraction.signals.map.line_signals import line_signals
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.map import junction_signals, line_signals
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 from support.signal_arrays import all_said, unknown_in, values_of
+from support.words import words_of
 
-at_junctions = SignalPasses.joined((junction_signals, line_signals))
+at_junctions = words_of(junction_signals, line_signals)
 
 JUNCTION = frozenset({"intersection"})
 

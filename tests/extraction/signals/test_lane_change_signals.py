@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.conduct.lane_changes.lane_change_signals import lane_change_signals
-from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals import ego_signals
+from rulec.extraction.signals.conduct.lane_changes import indicator_signals, lane_change_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 from support.signal_arrays import possible_in, said, unknown_in, values_of
+from support.words import words_of
 
 # From the right lane to the left one, at 10 m/s; the middle crosses the mark before state 2
 CHANGE = {0: (0, 0), 1: (5, 1.5), 2: (10, 2.5), 3: (15, 4)}
@@ -18,7 +19,7 @@ CHANGE = {0: (0, 0), 1: (5, 1.5), 2: (10, 2.5), 3: (15, 4)}
 
 def changes(*others, body=None, side="right", **thresholds):
     ego = body or vehicle(7, CHANGE)
-    return lane_change_signals(
+    return words_of(lane_change_signals, indicator_signals)(
         context_of(recording(lanes(2), [ego, *others]), side=side, **thresholds)
     )
 
@@ -42,11 +43,11 @@ def test_the_state_in_which_the_lane_is_another_one():
 def test_who_begins_on_a_mark_may_come_from_either_lane(ys, changed, lane):
     ego = vehicle(7, {k: (5.0 * k, y) for k, y in enumerate(ys)})
     context = context_of(recording(lanes(2), [ego]))
-    found = lane_change_signals(context)
+    found = words_of(lane_change_signals, indicator_signals)(context)
     assert np.flatnonzero(unknown_in(found, "lane_change")).tolist() == [
         k for k, mark in enumerate(changed) if mark == "T"
     ]
-    assert (~unknown_in(ego_signals(context), "lane")).tolist() == lane
+    assert (~unknown_in(words_of(ego_signals)(context), "lane")).tolist() == lane
 
 
 @pytest.mark.parametrize(
@@ -62,7 +63,9 @@ def test_who_may_come_into_a_lane_may_be_in_the_way_there(x, unknown, to_left):
     ego = vehicle(7, {k: (5.0 * k, y) for k, y in enumerate(ys)})
     other = steady(8, 10.0 + x - 15.0, 4.0 if to_left else 0.0, speed=15.0)
     route = ("2",) if to_left else ("1",)
-    found = lane_change_signals(context_of(recording(lanes(2), [ego, other]), route))
+    found = words_of(lane_change_signals, indicator_signals)(
+        context_of(recording(lanes(2), [ego, other]), route)
+    )
     assert not values_of(found, "lane_change").any()
     assert unknown_in(found, "lane_is_clear").tolist() == [False, False, unknown, False]
     assert values_of(found, "lane_is_clear")[[0, 1, 3]].all()
@@ -73,7 +76,9 @@ def test_who_is_back_within_half_a_second_has_changed_no_lanes(states, known):
     """Its middle is 1 m beyond the mark for 0.4 s or 0.6 s, as where headings jump."""
     ys = [0.0] * 10 + [3.0] * states + [0.0] * 10
     ego = vehicle(7, {k: (k, y) for k, y in enumerate(ys)})
-    found = lane_change_signals(context_of(recording(lanes(2), [ego], step_s=0.1)))
+    found = words_of(lane_change_signals, indicator_signals)(
+        context_of(recording(lanes(2), [ego], step_s=0.1))
+    )
     changed = np.flatnonzero(possible_in(found, "lane_change"))
     assert len(changed) == 2
     assert unknown_in(found, "lane_change")[changed].tolist() == [not known] * 2
@@ -88,7 +93,9 @@ def test_who_is_back_within_half_a_second_has_changed_no_lanes(states, known):
 def test_who_is_astride_for_a_second_and_comes_back_may_have_changed_lanes(y, states, unknown):
     ys = [0.0] * 10 + [y] * states + [0.0] * 10
     ego = vehicle(7, {k: (k, at) for k, at in enumerate(ys)})
-    found = lane_change_signals(context_of(recording(lanes(2), [ego], step_s=0.1)))
+    found = words_of(lane_change_signals, indicator_signals)(
+        context_of(recording(lanes(2), [ego], step_s=0.1))
+    )
     assert not values_of(found, "lane_change").any()
     assert np.flatnonzero(unknown_in(found, "lane_change")).tolist() == unknown
 
@@ -101,7 +108,7 @@ def test_who_stands_changes_no_lanes(heading, known):
     """
     places = {k: (20, y) for k, y in enumerate([0, 1.2, 2.4, 2.6, 2.6, 2.6])}
     ego = vehicle(7, places, heading=heading)
-    found = lane_change_signals(context_of(recording(lanes(2), [ego])))
+    found = words_of(lane_change_signals, indicator_signals)(context_of(recording(lanes(2), [ego])))
     (change,) = np.flatnonzero(possible_in(found, "lane_change"))
     assert unknown_in(found, "lane_change")[change] == (not known)
 
@@ -115,7 +122,9 @@ def test_who_follows_a_way_of_a_lane_that_forks_may_have_changed_to_none(x, know
         straight(3, 100, 300, 4, right_of=2, predecessors=(1,)),
     ]
     ego = vehicle(7, {k: (x + 5.0 * k, min(1.1 * k, 4)) for k in range(6)})
-    found = lane_change_signals(context_of(recording(road, [ego]), ("1", "2")))
+    found = words_of(lane_change_signals, indicator_signals)(
+        context_of(recording(road, [ego]), ("1", "2"))
+    )
     (change,) = np.flatnonzero(possible_in(found, "lane_change"))
     assert unknown_in(found, "lane_change")[change] == (not known)
 
@@ -129,7 +138,9 @@ def test_who_follows_a_way_to_where_two_become_one_may_have_changed_to_none(x, k
         straight(3, 100, 300, 4, predecessors=(1, 2)),
     ]
     ego = vehicle(7, {k: (x + 5.0 * k, min(1.1 * k, 4)) for k in range(6)})
-    found = lane_change_signals(context_of(recording(road, [ego]), ("2", "3")))
+    found = words_of(lane_change_signals, indicator_signals)(
+        context_of(recording(road, [ego]), ("2", "3"))
+    )
     (change,) = np.flatnonzero(possible_in(found, "lane_change"))
     assert unknown_in(found, "lane_change")[change] == (not known)
 
@@ -144,7 +155,9 @@ def test_who_goes_straight_on_into_the_only_lane_may_have_changed_to_none():
         straight(3, 110, 300, 4, predecessors=(4, 5)),
     ]
     ego = vehicle(7, {k: (45 + 20.0 * k, 4) for k in range(6)})
-    found = lane_change_signals(context_of(recording(road, [ego]), ("1", "4", "3")))
+    found = words_of(lane_change_signals, indicator_signals)(
+        context_of(recording(road, [ego]), ("1", "4", "3"))
+    )
     (change,) = np.flatnonzero(possible_in(found, "lane_change"))
     assert ego.states[change].x == 125
     assert unknown_in(found, "lane_change")[change]
@@ -165,7 +178,9 @@ def test_who_follows_a_way_that_parts_slowly_may_have_changed_to_none(y, known):
     xs = np.arange(90.0, 220.0, 5.0)
     ys = np.interp(xs, *np.array([(0, 0), *off]).T) + np.where(xs < 120, y, 0.0)
     ego = vehicle(7, dict(enumerate(zip(xs, ys, strict=True))))
-    found = lane_change_signals(context_of(recording(road, [ego]), ("1", "2")))
+    found = words_of(lane_change_signals, indicator_signals)(
+        context_of(recording(road, [ego]), ("1", "2"))
+    )
     (change,) = np.flatnonzero(possible_in(found, "lane_change"))
     assert xs[change] > 115
     assert unknown_in(found, "lane_change")[change] == (not known)
@@ -185,7 +200,9 @@ def test_who_comes_from_behind_on_a_lane_that_ends_does_not_come_into_egos(ends)
         road.append(straight(4, 90, 100, 4, right_of=3, predecessors=(2,), successors=(6,)))
     ego = vehicle(7, {k: (120 + 5 * k, 0 if k < 4 else 4) for k in range(8)})
     other = vehicle(8, {k: (30 + 12.5 * k, 4) for k in range(5)}, speed=25.0)
-    found = lane_change_signals(context_of(recording(road, [ego, other]), ("1", "3", "5")))
+    found = words_of(lane_change_signals, indicator_signals)(
+        context_of(recording(road, [ego, other]), ("1", "3", "5"))
+    )
     (change,) = np.flatnonzero(values_of(found, "lane_change"))
     assert values_of(found, "lane_is_clear")[change] == ends
 
@@ -216,7 +233,9 @@ def test_who_comes_from_behind_on_a_lane_that_forks_goes_where_its_track_goes(
     found = recording(road, [ego, other])
     elsewhere = np.zeros((2, 20), dtype=bool)
     elsewhere[1, 6:] = goes == "off"
-    signals = lane_change_signals(context_of(found, ("1", "2"), elsewhere=elsewhere))
+    signals = words_of(lane_change_signals, indicator_signals)(
+        context_of(found, ("1", "2"), elsewhere=elsewhere)
+    )
     (change,) = np.flatnonzero(values_of(signals, "lane_change"))
     told = (
         "?"
@@ -243,7 +262,9 @@ def test_who_comes_from_behind_on_a_lane_that_forks_goes_where_its_track_goes(
 )
 def test_a_mark_that_may_lie_elsewhere_may_not_have_been_crossed(ys, name, unknown):
     ego = vehicle(7, {k: (5 * k, y) for k, y in enumerate(ys)})
-    signals = lane_change_signals(context_of(replace(recording(lanes(2), [ego]), name=name)))
+    signals = words_of(lane_change_signals, indicator_signals)(
+        context_of(replace(recording(lanes(2), [ego]), name=name))
+    )
     changed = possible_in(signals, "lane_change")
     assert changed.any()
     assert bool(unknown_in(signals, "lane_change")[changed.argmax()]) == unknown
@@ -394,7 +415,7 @@ def test_who_only_reaches_over_from_the_lane_beyond_may_not_have_to_brake(y, unk
     Beyond 6 m its middle is in the third.
     """
     found = recording(lanes(3), [vehicle(7, CHANGE), steady(8, 0, y, 10)])
-    signals = lane_change_signals(context_of(found))
+    signals = words_of(lane_change_signals, indicator_signals)(context_of(found))
     assert not values_of(signals, "lane_is_clear")[2]
     assert unknown_in(signals, "lane_is_clear").tolist() == [False, False, unknown, False]
 
@@ -407,7 +428,9 @@ def test_who_perhaps_has_to_brake_is_not_named_beside_who_surely_has_to(others, 
     """8 only reaches over from the lane beyond; 9, 5 m/s faster and 3 m behind, is in the lane."""
     bodies = {"8": steady(8, 0, 6.6, 10), "9": steady(9, 3 - 15, 4, speed=15)}
     there = [body for name, body in bodies.items() if name in others]
-    signals = lane_change_signals(context_of(recording(lanes(3), [vehicle(7, CHANGE), *there])))
+    signals = words_of(lane_change_signals, indicator_signals)(
+        context_of(recording(lanes(3), [vehicle(7, CHANGE), *there]))
+    )
     assert signals.whom["lane_is_clear"].tolist() == [(), (), named, ()]
     assert unknown_in(signals, "lane_is_clear").tolist() == [False, False, unknown, False]
 
@@ -423,7 +446,9 @@ def test_who_stands_and_drifts_across_a_mark_does_not_surely_disturb_others(
     ego = vehicle(7, places, speed=mps)
     other = steady(8, places[23][0] - 15 - 5.0 * 23, 4, speed=10, steps=30)
     there = recording(lanes(2), [ego, other])
-    found = lane_change_signals(context_of(there, ("1",), speed_error_mps=error_mps))
+    found = words_of(lane_change_signals, indicator_signals)(
+        context_of(there, ("1",), speed_error_mps=error_mps)
+    )
     assert np.flatnonzero(~values_of(found, "lane_is_clear")).tolist() == [23]
     assert unknown_in(found, "lane_is_clear")[23] == unknown
 
@@ -436,7 +461,9 @@ def test_who_moves_off_when_it_has_slid_across_a_mark_does_not_surely_disturb_ot
     places = {k: (max(k - moves_off, 0), 1.18 + 0.05 * k) for k in range(30)}
     ego = vehicle(7, places, speed=2.0)
     other = steady(8, places[23][0] - 15 - 5.0 * 23, 4, speed=10, steps=30)
-    found = lane_change_signals(context_of(recording(lanes(2), [ego, other]), ("1",)))
+    found = words_of(lane_change_signals, indicator_signals)(
+        context_of(recording(lanes(2), [ego, other]), ("1",))
+    )
     assert np.flatnonzero(~values_of(found, "lane_is_clear")).tolist() == [23]
     assert unknown_in(found, "lane_is_clear")[23] == unknown
 
@@ -517,8 +544,8 @@ def test_who_turns_off_swings_over_the_lanes_of_the_road_that_it_comes_to(headin
     )
     ego = replace(first, states=first.states | then.states, outlines=first.outlines | then.outlines)
     context = context_of(recording(road, [ego]), ("1", "2", "3"))
-    found = lane_change_signals(context)
-    across = ego_signals(context)
+    found = words_of(lane_change_signals, indicator_signals)(context)
+    across = words_of(ego_signals)(context)
     for signals, word in ((found, "lane_change"), (across, "straddling")):
         assert possible_in(signals, word)[3]
         assert unknown_in(signals, word)[3] == (not known)

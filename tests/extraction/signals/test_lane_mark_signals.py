@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
+from rulec.extraction.signals import lane_mark_signals
 from support.builders.drive_contexts import context_of, steady, told_on_both_sides
 from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
 from support.signal_arrays import possible_in, possibly_said, unknown_in, values_of
+from support.words import words_of
 
 # From the right lane to the left one, at 10 m/s; the middle crosses the mark before state 2
 CHANGE = {0: (0, 0), 1: (5, 1.5), 2: (10, 2.5), 3: (15, 4)}
@@ -21,7 +22,7 @@ def marks(y, right=None, left=None, count=2, route=("1",)):
     road[0] = replace(road[0], left_mark=right)
     if count > 1:
         road[1] = replace(road[1], right_mark=left)
-    signals = lane_mark_signals(context_of(recording(road, [steady(7, 0, y)]), route))
+    signals = words_of(lane_mark_signals)(context_of(recording(road, [steady(7, 0, y)]), route))
     known = {name: possibly_said(signals, name)[0].item() for name in signals.world}
     return known, {name: unknown_in(signals, name)[0].item() for name in signals.world}
 
@@ -52,7 +53,7 @@ def test_an_only_lane_has_no_marks_between_lanes():
 def test_a_line_between_lanes_without_any_mark_leaves_it_unknown():
     road = lanes(3)
     road[0] = replace(road[0], left_mark="broken")
-    signals = lane_mark_signals(context_of(recording(road, [steady(7, 0, 0)])))
+    signals = words_of(lane_mark_signals)(context_of(recording(road, [steady(7, 0, 0)])))
     assert unknown_in(signals, "marked_lanes").all()
 
 
@@ -78,7 +79,7 @@ def test_who_gets_over_a_solid_line_has_been_on_it_however_badly_places_are_know
     road = lanes(2)
     road = [replace(road[0], left_mark=mark), replace(road[1], right_mark=mark)]
     ego = vehicle(7, {k: (8.0 * k, float(y)) for k, y in enumerate(ys)})
-    found = lane_mark_signals(context_of(recording(road, [ego]), place_error_m=0.4))
+    found = words_of(lane_mark_signals)(context_of(recording(road, [ego]), place_error_m=0.4))
     values = np.where(values_of(found, "on_solid_line"), "T", "F")
     assert "".join(np.where(unknown_in(found, "on_solid_line"), "?", values)) == told
 
@@ -87,7 +88,9 @@ def test_who_is_parked_on_a_line_does_not_cross_it():
     road = lanes(2)
     road[0] = replace(road[0], left_mark="solid")
     parked, drives = (steady(7, 0, 1.4, speed=mps) for mps in (0, 10))
-    found = [lane_mark_signals(context_of(recording(road, [ego]))) for ego in (parked, drives)]
+    found = [
+        words_of(lane_mark_signals)(context_of(recording(road, [ego]))) for ego in (parked, drives)
+    ]
     assert [bool(values_of(x, "on_solid_line")[0]) for x in found] == [False, True]
 
 
@@ -97,7 +100,9 @@ def test_who_stands_on_a_line_from_the_beginning_on_has_not_been_seen_to_cross_i
     # Its box wanders by 0.4 m before it moves off; who drives slowly is 1.5 m on after a state
     parked = vehicle(7, {0: (50, 1.4), 1: (50.4, 1.4), 2: (50, 1.4), 3: (56, 1.4)}, speed=0.1)
     creeps = vehicle(7, {k: (50 + 1.5 * k, 1.4) for k in range(4)}, speed=3.0)
-    found = [lane_mark_signals(context_of(recording(road, [ego]))) for ego in (parked, creeps)]
+    found = [
+        words_of(lane_mark_signals)(context_of(recording(road, [ego]))) for ego in (parked, creeps)
+    ]
     assert [unknown_in(x, "on_solid_line").tolist() for x in found] == [
         [True, True, True, False],
         [False] * 4,
@@ -140,7 +145,7 @@ def at_a_shoulder(linked):
 def on_solid_lines(road, body, route=("1",), step_s=0.5):
     """Whether ego is on a solid line, by state; the same in the mirror."""
     found = recording(road, [body], step_s=step_s)
-    return told_on_both_sides(lane_mark_signals, found, route)["on_solid_line"]
+    return told_on_both_sides(words_of(lane_mark_signals), found, route)["on_solid_line"]
 
 
 @pytest.mark.parametrize("route", [("1",), ("3",)])

@@ -9,12 +9,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.conduct.lane_changes.lane_change_signals import lane_change_signals
-from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
+from rulec.extraction.signals.conduct import turning_conflicts
+from rulec.extraction.signals.conduct.lane_changes import indicator_signals, lane_change_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording
 from support.signal_arrays import possible_in, unknown_in, values_of
+from support.words import words_of
 
 OUTER_M, INNER_M, STEP_S = 30.0, 26.4, 0.2
 TIMES = np.arange(0, 12, STEP_S)
@@ -66,7 +67,10 @@ def seen(behind_m, brakes_mps2, own_mps=7.0, mps=7.0):
 def told(found, side):
     route = ("i", "ix", "x")
     context = context_of(found, route, side)
-    words = lane_change_signals(context), turning_conflicts(context)
+    words = (
+        words_of(lane_change_signals, indicator_signals)(context),
+        words_of(turning_conflicts)(context),
+    )
     unknown = [
         unknown_in(words[0], "lane_change"),
         unknown_in(words[0], "lane_is_clear"),

@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import pytest
 
-from rulec.extraction.signals.map.level_crossing_signals import level_crossing_signals
+from rulec.extraction.signals.map import level_crossing_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, straight, vehicle
 from support.signal_arrays import all_said, said, unknown_in, values_of
+from support.words import words_of
 
 RAILS = frozenset({"level_crossing"})
 
@@ -29,8 +30,8 @@ def told(lanes, *xs, complete=("rail",), route=("1", "2", "3")):
     """The signals, which are the same in the mirror."""
     body = vehicle(7, {k: (x, 0) for k, x in enumerate(xs)})
     found = replace(recording(lanes, [body]), complete=frozenset(complete))
-    right = level_crossing_signals(context_of(found, route))
-    left = level_crossing_signals(context_of(mirrored_recording(found), route, "left"))
+    right = words_of(level_crossing_signals)(context_of(found, route))
+    left = words_of(level_crossing_signals)(context_of(mirrored_recording(found), route, "left"))
     for name in right.world:
         assert said(right, name).tolist() == said(left, name).tolist(), name
     return right
@@ -98,5 +99,5 @@ def test_tracks_in_the_lane_at_the_kerb_where_a_tram_runs_there(y, expected):
     lanes = [straight(1, 0, 500, left_of=2), straight(2, 0, 500, 4, right_of=1)]
     ego, tram = steady(7, 0, 4 - y, 10, 4), vehicle(8, dict.fromkeys(range(4), (60, y)), "train")
     found = replace(recording(lanes, [ego, tram]), complete=frozenset({"rail"}))
-    signals = level_crossing_signals(context_of(found))
+    signals = words_of(level_crossing_signals)(context_of(found))
     assert values_of(signals, "tracks_at_kerb").tolist() == [expected] * 4

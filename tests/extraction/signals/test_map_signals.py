@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.junction_signals import junction_signals
+from rulec.extraction.signals.map import junction_signals, map_signals
 from rulec.extraction.signals.map.map_signals import (
     NO_CROSSING_M,
     NO_LIMIT_KMH,
     distance_to_crossing,
-    map_signals,
     next_crossing,
 )
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import all_said, letters, said, unknown_in, values_of
+from support.words import words_of
 
 
 def context(xs, *others, first=None, second=None):
@@ -37,29 +37,36 @@ def zebra(number, x):
 )
 def test_one_may_be_faster_from_where_the_front_is_past_a_sign(limits, told):
     first, second = ({"limit_mps": limit / 3.6} for limit in limits)
-    found = values_of(map_signals(context([90, 97, 99, 101], first=first, second=second)), "limit")
+    found = values_of(
+        words_of(map_signals)(context([90, 97, 99, 101], first=first, second=second)), "limit"
+    )
     assert found.tolist() == told
 
 
 def test_the_limit_of_the_lanelet_under_ego():
-    found = values_of(map_signals(context([90, 110], first={"limit_mps": 50 / 3.6})), "limit")
+    found = values_of(
+        words_of(map_signals)(context([90, 110], first={"limit_mps": 50 / 3.6})), "limit"
+    )
     assert found.tolist() == [50.0, NO_LIMIT_KMH]
-    assert "limit" not in map_signals(context([90, 110])).world
+    assert "limit" not in words_of(map_signals)(context([90, 110])).world
 
 
 def test_the_least_speed_of_the_lanelet_under_ego():
-    found = all_said(map_signals(context([90, 110], first={"minimum_mps": 70 / 3.6})))
+    found = all_said(words_of(map_signals)(context([90, 110], first={"minimum_mps": 70 / 3.6})))
     assert found["minimum_limit"].tolist() == [70.0, 0.0]
-    assert "minimum_limit" not in map_signals(context([90, 110], first={"limit_mps": 9.0})).world
+    assert (
+        "minimum_limit"
+        not in words_of(map_signals)(context([90, 110], first={"limit_mps": 9.0})).world
+    )
 
 
 def test_the_limit_is_unknown_where_a_sign_may_be_another():
     """Also as soon as ego's front is past it, from where a higher limit would apply."""
     untold = {"untold_signs": frozenset({"MAX_SPEED"})}
     drive = context([90, 97, 99, 110], first={"limit_mps": 50 / 3.6}, second=untold)
-    assert unknown_in(map_signals(drive), "limit").tolist() == [False, False, True, True]
+    assert unknown_in(words_of(map_signals)(drive), "limit").tolist() == [False, False, True, True]
     nowhere = context([90, 110], first={"limit_mps": 50 / 3.6})
-    assert not unknown_in(map_signals(nowhere), "limit").any()
+    assert not unknown_in(words_of(map_signals)(nowhere), "limit").any()
 
 
 def test_the_limit_of_a_junction_is_unknown_where_that_before_it_is():
@@ -71,7 +78,7 @@ def test_the_limit_of_a_junction_is_unknown_where_that_before_it_is():
         straight(3, 120, 220, predecessors=(2,), limit_mps=14.0),
     ]
     body = vehicle(7, {0: (110, 0), 1: (150, 0)})
-    found = map_signals(context_of(recording(road, [body]), ("1", "2", "3")))
+    found = words_of(map_signals)(context_of(recording(road, [body]), ("1", "2", "3")))
     assert unknown_in(found, "limit").tolist() == [True, False]
 
 
@@ -88,7 +95,7 @@ def test_the_limit_of_a_junction_is_unknown_where_that_before_it_is():
 )
 def test_what_a_sign_says_is_unknown_where_it_may_hold(sign, told, word):
     drive = context([90, 110], first=told, second={"untold_signs": frozenset({sign})})
-    assert unknown_in(map_signals(drive), word).tolist() == [False, True]
+    assert unknown_in(words_of(map_signals)(drive), word).tolist() == [False, True]
 
 
 @pytest.mark.parametrize(
@@ -110,18 +117,20 @@ def test_a_limit_goes_on_through_a_junction_for_who_goes_straight_on(after, turn
     end = [(x, y), (x + onward[0], y + onward[1])]
     road.append(lanelet(3, end, predecessors=(2,), limit_mps=after and after / 3.6))
     body = vehicle(7, {0: (90, 0), 1: (105, 0)})
-    found = values_of(map_signals(context_of(recording(road, [body]), ("1", "2", "3"))), "limit")
+    found = values_of(
+        words_of(map_signals)(context_of(recording(road, [body]), ("1", "2", "3"))), "limit"
+    )
     assert found.tolist() == [70.0, limit]
 
 
 def test_signs_of_lines_hold_until_the_line_is_crossed():
     signs = {"signs": frozenset({"STOP", "NO_OVERTAKING_START"})}
     # The front is at 92, 101, 105, the middle at 90, 99, 103
-    found = all_said(map_signals(context([90, 99, 103], first=signs)))
+    found = all_said(words_of(map_signals)(context([90, 99, 103], first=signs)))
     assert found["stop_sign"].tolist() == [True, True, False]
     assert found["no_overtaking_sign"].tolist() == [True, True, False]
     assert "give_way_sign" not in found
-    late = all_said(map_signals(context([90, 103, 107], first=signs)))
+    late = all_said(words_of(map_signals)(context([90, 103, 107], first=signs)))
     assert late["stop_sign"].tolist() == [True, True, False]
     assert late["no_overtaking_sign"].tolist() == [True, False, False]
 
@@ -136,9 +145,15 @@ def test_a_sign_holds_when_one_crosses_its_line_askew():
     lanes.append(straight(2, 100, 200, predecessors=(1,)))
     body = vehicle(7, {k: (x, 0) for k, x in enumerate(middles)}, heading=0.6)
     askew = context_of(recording(lanes, [body]), ("1", "2"))
-    crosses = values_of(junction_signals(askew), "crosses_stop_line")
+    crosses = values_of(words_of(junction_signals)(askew), "crosses_stop_line")
     assert crosses.tolist() == [False, False, False, True, False]
-    assert values_of(map_signals(askew), "stop_sign").tolist() == [True, True, True, True, False]
+    assert values_of(words_of(map_signals)(askew), "stop_sign").tolist() == [
+        True,
+        True,
+        True,
+        True,
+        False,
+    ]
 
 
 def test_the_distance_to_the_next_crossing_is_from_front_to_its_edge():
@@ -149,7 +164,7 @@ def test_the_distance_to_the_next_crossing_is_from_front_to_its_edge():
     # Fronts are at 12, 38, 43, 72 and 92
     expected = [26, 0, 0, 6, NO_CROSSING_M]
     assert distance_to_crossing(found) == pytest.approx(expected, abs=0.05)
-    signals = map_signals(found)
+    signals = words_of(map_signals)(found)
     # At this speed ego may be past a crossing of 4 m by the middle of the step
     assert letters(signals, "crossing_zone") == "F???F"
     assert said(signals, "surface").tolist() == [
@@ -162,18 +177,24 @@ def test_the_distance_to_the_next_crossing_is_from_front_to_its_edge():
 
 def test_surfaces_by_ego_s_middle():
     junction = {"types": frozenset({"intersection"})}
-    assert values_of(map_signals(context([97, 101, 103], second=junction)), "surface").tolist() == [
+    assert values_of(
+        words_of(map_signals)(context([97, 101, 103], second=junction)), "surface"
+    ).tolist() == [
         "carriageway",
         "junction",
         "junction",
     ]
     bus_lane = {"types": frozenset({"busLane"})}
-    assert values_of(map_signals(context([97, 101], second=bus_lane)), "surface").tolist() == [
+    assert values_of(
+        words_of(map_signals)(context([97, 101], second=bus_lane)), "surface"
+    ).tolist() == [
         "carriageway",
         "bus_lane",
     ]
     for_cycles = {"types": frozenset({"bicycleLane"})}
-    assert values_of(map_signals(context([97, 101], second=for_cycles)), "surface").tolist() == [
+    assert values_of(
+        words_of(map_signals)(context([97, 101], second=for_cycles)), "surface"
+    ).tolist() == [
         "carriageway",
         "cycle_lane",
     ]
@@ -210,7 +231,7 @@ def test_a_crossing_that_lies_askew_begins_later_at_one_edge_of_a_lane(front, wo
 
 
 def surfaces(bodies, lanes, route=("1", "2")):
-    found = map_signals(context_of(recording(lanes, [bodies]), route))
+    found = words_of(map_signals)(context_of(recording(lanes, [bodies]), route))
     unknown = unknown_in(found, "surface").tolist()
     return [
         "?" if u else word
@@ -255,7 +276,7 @@ def test_who_stands_where_a_junction_or_a_bus_lane_begins():
 
 def test_the_zone_before_a_crossing_begins_within_the_tolerance():
     for x, word in ((50.9, False), (50.98, "?"), (51.02, "?"), (51.1, True)):
-        found = map_signals(context([x] * 3, zebra(8, 60)))
+        found = words_of(map_signals)(context([x] * 3, zebra(8, 60)))
         known = ~unknown_in(found, "crossing_zone")
         assert known.all() == (word != "?")
         assert not known.any() or set(values_of(found, "crossing_zone").tolist()) == {word}

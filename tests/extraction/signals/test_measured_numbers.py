@@ -7,13 +7,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals import ego_signals
+from rulec.extraction.signals.map import lanes_ahead
 from rulec.extraction.signals.measured_numbers import LONGEST_S
-from rulec.extraction.signals.participants.participant_signals import participant_signals
+from rulec.extraction.signals.participants import (
+    following_signals,
+    participant_conduct,
+    participant_signals,
+)
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
 from support.signal_arrays import bounded, bounds_of, values_of
+from support.words import words_of
 
 NGSIM, SUMO = {"name": "USA_US101"}, {"form": "SUMO data"}
 
@@ -26,13 +32,17 @@ def seen(*bodies, source=NGSIM, limit_mps=None):
 
 def speeds(mps, **more):
     """The bounds of the speed of a vehicle at constant speed, by state."""
-    low, high = bounds_of(ego_signals(seen(steady(7, 0, 0, mps), **more)), "speed")
+    low, high = bounds_of(words_of(ego_signals)(seen(steady(7, 0, 0, mps), **more)), "speed")
     return list(zip(low.tolist(), high.tolist(), strict=True))
 
 
 def to_other(name, *, mps=10.0, x=30, y=0):
     """The bounds of a number about one that stands, in the second state."""
-    bounds = bounded(participant_signals(seen(steady(7, 0, 0, mps), steady(8, x + mps / 2, y, 0))))
+    bounds = bounded(
+        words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+            seen(steady(7, 0, 0, mps), steady(8, x + mps / 2, y, 0))
+        )
+    )
     return tuple(float(end[1]) for end in bounds[name])
 
 
@@ -46,7 +56,7 @@ def test_at_the_ends_a_change_of_speed_shows_half_a_window_later():
     # 4 m/s² from 10 m/s on: the mean of the first half second is 11 m/s. 0.6 m/s are its error,
     # and 4 m/s² for a quarter of a second 1 m/s.
     ego = vehicle(7, {k: (10 * t + 2 * t * t, 0) for k in range(5) for t in [k / 2]})
-    low, high = bounds_of(ego_signals(seen(ego)), "speed")
+    low, high = bounds_of(words_of(ego_signals)(seen(ego)), "speed")
     assert low[0] <= 36.0 <= high[0]
     assert low[2] == pytest.approx((14 - 0.3) * 3.6, abs=0.011)
 
@@ -68,7 +78,7 @@ def test_who_brakes_until_a_lower_limit_begins_keeps_it(at, is_faster):
     ]
     ego = vehicle(7, {k: (x, 0.0) for k, x in enumerate(braking_to_14_mps(at))})
     context = context_of(recording(road, [ego], step_s=0.1), ("1", "2"))
-    low, _ = bounds_of(ego_signals(context), "speed")
+    low, _ = bounds_of(words_of(ego_signals)(context), "speed")
     beyond = context.limit_mps == 14.0
     assert (low[beyond] > 14.0 * 3.6).any() == is_faster
 
@@ -83,7 +93,7 @@ def test_a_stop_or_peak_that_is_shorter_than_the_mean(sign, step_s):
     xs = 90 + least * from_s + np.where(times < 3, -1, 1) * gained * from_s**2 / 2
     ego = vehicle(7, {k: (x, 0.0) for k, x in enumerate(xs.tolist())})
     found = replace(recording(lanes(2), [ego], step_s=step_s), form="tracks")
-    low, high = bounds_of(ego_signals(context_of(found)), "speed")
+    low, high = bounds_of(words_of(ego_signals)(context_of(found)), "speed")
     true = (least + np.abs(from_s) * gained) * 3.6
     assert (low <= true + 0.01).all()
     assert (true - 0.01 <= high).all()
@@ -126,7 +136,11 @@ def test_headways_are_quotients_of_what_gaps_and_speeds_may_be():
 
 
 def test_errors_of_two_speeds_add_up_as_squares():
-    bounds = bounded(participant_signals(seen(steady(7, 0, 0, 10), steady(8, 30, 0, 5))))
+    bounds = bounded(
+        words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+            seen(steady(7, 0, 0, 10), steady(8, 30, 0, 5))
+        )
+    )
     low, high = (end[1] for end in bounds["speed_difference"])
     wrong = 1.08 * np.sqrt(2)
     assert (low, high) == pytest.approx((18 - wrong, 18 + wrong), abs=0.011)
@@ -137,7 +151,9 @@ def test_errors_of_two_speeds_add_up_as_squares():
 @given(st.floats(0, 40), st.floats(-60, 60), st.floats(-6, 6), st.sampled_from([NGSIM, SUMO, {}]))
 def test_what_is_measured_lies_within_its_bounds(mps, x, y, source):
     context = seen(steady(7, 0, 0, mps), steady(8, x, y, 8), source=source)
-    found = ego_signals(context) | participant_signals(context)
+    found = words_of(ego_signals)(context) | words_of(
+        participant_signals, participant_conduct, lanes_ahead, following_signals
+    )(context)
     for name, (low, high) in bounded(found).items():
         measured = values_of(found, name)
         assert (low - 0.006 <= measured).all(), name
@@ -164,5 +180,7 @@ def places_by_speed(mps_at, step_s, until_s=8.0):
 def test_one_may_stand_between_two_slow_samples(mps_at, may_stand):
     step_s = 0.5
     body = vehicle(7, places_by_speed(mps_at, step_s), speed=6.0)
-    low, _ = bounds_of(ego_signals(context_of(recording(lanes(2), [body], step_s=step_s))), "speed")
+    low, _ = bounds_of(
+        words_of(ego_signals)(context_of(recording(lanes(2), [body], step_s=step_s))), "speed"
+    )
     assert (low == 0).any() == may_stand

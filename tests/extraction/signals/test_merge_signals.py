@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.merge_signals import merge_signals
+from rulec.extraction.signals.map import merge_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 RIGHT, LEFT, ON = "1", "2", "3"
 
@@ -40,8 +41,8 @@ def signals(
     """Ego's front is 2 m ahead of its middle; the same in the mirror."""
     ego = vehicle(7, {k: (x, 4.0 if x > 100 else y) for k, x in enumerate(xs)})
     found = recording(road, [ego, *others], step_s=step_s)
-    right = merge_signals(context_of(found, route))
-    left = merge_signals(context_of(mirrored_recording(found), route, "left"))
+    right = words_of(merge_signals)(context_of(found, route))
+    left = words_of(merge_signals)(context_of(mirrored_recording(found), route, "left"))
     for name in ("narrowing", "merged"):
         assert values_of(right, name).tolist() == values_of(left, name).tolist()
         assert unknown_in(right, name).tolist() == unknown_in(left, name).tolist()
@@ -82,7 +83,7 @@ def test_where_a_net_has_all_lanes_that_one_ends():
     road = lanes(right=())
     ego = vehicle(7, {0: (80, 4), 1: (90, 4)})
     found = replace(recording(road, [ego]), complete=frozenset({"lanes"}))
-    told = merge_signals(context_of(found, (LEFT, ON)))
+    told = words_of(merge_signals)(context_of(found, (LEFT, ON)))
     assert values_of(told, "narrowing").all()
     assert not unknown_in(told, "narrowing").any()
 
@@ -96,7 +97,7 @@ def test_where_the_whole_road_ends_and_vehicles_can_only_turn_around():
     ]
     ego = vehicle(7, {0: (80, 4), 1: (95, 4), 2: (97, 8), 3: (80, 8)})
     found = replace(recording(road, [ego]), complete=frozenset({"lanes"}))
-    told = merge_signals(context_of(found, ("2", "9", "10")))
+    told = words_of(merge_signals)(context_of(found, ("2", "9", "10")))
     for name in ("narrowing", "merged"):
         assert not values_of(told, name).any()
         assert not unknown_in(told, name).any()
@@ -151,7 +152,7 @@ def test_a_third_lane_has_nothing_to_do_with_it():
         straight(5, 100, 250, 8, predecessors=(4,), right_of=3),
     ]
     ego = vehicle(7, {0: (80, 8), 1: (90, 8), 2: (110, 8)})
-    told = merge_signals(context_of(recording(road, [ego]), ("4", "5")))
+    told = words_of(merge_signals)(context_of(recording(road, [ego]), ("4", "5")))
     assert not values_of(told, "narrowing").any()
     assert not values_of(told, "merged").any()
 
@@ -205,7 +206,7 @@ def test_who_is_beside_ego_beyond_the_narrowing_is_on_another_lane():
     ]
     ego = vehicle(7, {0: (95, 8), 1: (97, 8), 2: (104, 8)})
     other = vehicle(1, {0: (97, 0), 1: (100, 4), 2: (106, 4)})
-    told = merge_signals(context_of(recording(road, [ego, other]), ("4", "3")))
+    told = words_of(merge_signals)(context_of(recording(road, [ego, other]), ("4", "3")))
     assert values_of(told, "narrowing").tolist() == [True, True, False]
     assert not values_of(told, "abreast_at_narrowing").any()
 

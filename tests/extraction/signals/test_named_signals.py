@@ -1,38 +1,46 @@
 """Only signals of the names given are computed, and each is the same as among all."""
 
 from dataclasses import replace
+from types import ModuleType
 
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.clearance_signals import clearance_signals
-from rulec.extraction.signals.conduct.called_signals import called_signals
-from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
-from rulec.extraction.signals.conduct.lane_changes.lane_change_signals import lane_change_signals
-from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
-from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
-from rulec.extraction.signals.conduct.oncoming_conflicts import oncoming_conflicts
-from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
-from rulec.extraction.signals.conduct.reason_signals import reason_signals
-from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
-from rulec.extraction.signals.ego_signals import ego_signals
-from rulec.extraction.signals.flow_signals import flow_signals
-from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
-from rulec.extraction.signals.map.crossing_signals import crossing_signals
-from rulec.extraction.signals.map.junction_signals import junction_signals
-from rulec.extraction.signals.map.level_crossing_signals import level_crossing_signals
-from rulec.extraction.signals.map.line_signals import line_signals
-from rulec.extraction.signals.map.map_signals import map_signals
-from rulec.extraction.signals.map.merge_signals import merge_signals
-from rulec.extraction.signals.map.priority_signals import priority_signals
-from rulec.extraction.signals.map.road_signals import road_signals
-from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
-from rulec.extraction.signals.map.zone_signals import zone_signals
-from rulec.extraction.signals.participants.following_signals import following_signals
-from rulec.extraction.signals.participants.intention_signals import intention_signals
-from rulec.extraction.signals.participants.participant_signals import participant_signals
+from rulec.extraction.signals import clearance_signals, ego_signals, flow_signals, lane_mark_signals
+from rulec.extraction.signals.conduct import (
+    being_overtaken,
+    called_signals,
+    lamp_signals,
+    manoeuvre_signals,
+    next_lane_signals,
+    oncoming_conflicts,
+    overtaking_signals,
+    reason_signals,
+    turning_conflicts,
+)
+from rulec.extraction.signals.conduct.lane_changes import indicator_signals, lane_change_signals
+from rulec.extraction.signals.map import (
+    crossing_signals,
+    exit_room,
+    junction_signals,
+    lanes_ahead,
+    level_crossing_signals,
+    line_signals,
+    map_signals,
+    merge_signals,
+    priority_signals,
+    road_signals,
+    roundabout_signals,
+    zone_signals,
+)
+from rulec.extraction.signals.participants import (
+    following_signals,
+    intention_signals,
+    participant_conduct,
+    participant_signals,
+)
 from rulec.extraction.signals.signal_columns import world_signals
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.recordings.recording import Weather
 from support.builders.drive_contexts import context_of, steady
@@ -40,17 +48,44 @@ from support.builders.recordings import recording
 from support.defined_words import LEFT_TO_DEFINITIONS
 from support.generators.random_recordings import lanes
 from support.signal_arrays import bounds_of, texts_of, unknown_in, values_of
+from support.words import words_of
 
-GROUPS = (
-    *(ego_signals, participant_signals, following_signals, map_signals, road_signals),
-    *(junction_signals, line_signals, priority_signals, crossing_signals, roundabout_signals),
-    *(level_crossing_signals, zone_signals),
-    *(intention_signals, called_signals, merge_signals, clearance_signals),
-    *(flow_signals, overtaking_signals),
-    *(lane_change_signals, lane_mark_signals),
-    *(manoeuvre_signals, lamp_signals, reason_signals, turning_conflicts, next_lane_signals),
-    oncoming_conflicts,
-)
+GROUPS = [
+    words_of(module)
+    for module in (
+        ego_signals,
+        participant_signals,
+        participant_conduct,
+        lanes_ahead,
+        following_signals,
+        map_signals,
+        road_signals,
+        junction_signals,
+        line_signals,
+        priority_signals,
+        crossing_signals,
+        roundabout_signals,
+        level_crossing_signals,
+        zone_signals,
+        exit_room,
+        intention_signals,
+        called_signals,
+        merge_signals,
+        clearance_signals,
+        flow_signals,
+        overtaking_signals,
+        being_overtaken,
+        lane_change_signals,
+        indicator_signals,
+        lane_mark_signals,
+        manoeuvre_signals,
+        lamp_signals,
+        reason_signals,
+        turning_conflicts,
+        next_lane_signals,
+        oncoming_conflicts,
+    )
+]
 LAMPS = frozenset({"left_indicator", "right_indicator", "hazard_lights", "dipped_beam"})
 LAMPS |= frozenset({"main_beam", "front_fog_lamp", "rear_fog_lamp"})
 COMPLETE = (
@@ -109,14 +144,17 @@ def test_what_nobody_wants_is_not_computed():
     context, asked = context_of(everything()), []
 
     def gives(name):
-        def signals_of(context):
+        def definition(context):
             asked.append(name)
             return world_signals(**{name: np.zeros(context.states), "by_the_way": np.ones(1)})
 
-        return signals_of
+        definition.__module__ = "made_up"
+        return definition
 
-    passes = {("wet", "icy"): gives("wet"), ("speed",): gives("speed")}
-    assert names(SignalPasses(passes)(context, frozenset({"speed", "lane"}))) == {"speed"}
+    word("wet", "icy")(gives("wet"))
+    word("speed")(gives("speed"))
+    words = words_of(ModuleType("made_up"))
+    assert names(words(context, frozenset({"speed", "lane"}))) == {"speed"}
     assert asked == ["speed"]
-    assert names(SignalPasses(passes)(context, frozenset({"icy"}))) == set()
+    assert names(words(context, frozenset({"icy"}))) == set()
     assert asked == ["speed", "wet"]

@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
-from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals import ego_signals
+from rulec.extraction.signals.conduct import next_lane_signals
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of, steady, told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 STEP_S = 0.5
 
@@ -18,12 +19,14 @@ STEP_S = 0.5
 def signals(lanes, *bodies, route=("1",), **thresholds):
     """The words, unknown ones as "?", which are the same in the mirror."""
     found = recording(lanes, bodies, step_s=STEP_S)
-    return told_on_both_sides(next_lane_signals, found, route, **thresholds)
+    return told_on_both_sides(words_of(next_lane_signals), found, route, **thresholds)
 
 
 def lanes_of(lanes, *bodies):
     """Which lane ego is in, and how many there are."""
-    found = told_on_both_sides(ego_signals, recording(lanes, bodies, step_s=STEP_S), ("1",))
+    found = told_on_both_sides(
+        words_of(ego_signals), recording(lanes, bodies, step_s=STEP_S), ("1",)
+    )
     return found["lane"][0], found["lanes"][0]
 
 
@@ -279,7 +282,7 @@ def test_a_camera_that_stands_sees_what_ego_leaves_behind(form, first, last):
     """
     bodies = [ego(100, y=4, steps=10), steady(8, 400, 4, 10.0, steps=9, first=first)]
     found = replace(recording(two_lanes(), bodies, step_s=STEP_S), form=form)
-    told = next_lane_signals(context_of(found, ("1",)))
+    told = words_of(next_lane_signals)(context_of(found, ("1",)))
     words = np.where(
         unknown_in(told, "near_lane_is_free"), "?", values_of(told, "near_lane_is_free")
     )

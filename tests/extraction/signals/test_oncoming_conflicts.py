@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from rulec.api.rulebook_compilation import machines
-from rulec.extraction.signals.conduct.oncoming_conflicts import oncoming_conflicts
+from rulec.extraction.signals.conduct import oncoming_conflicts
 from support.builders.drive_contexts import told_on_both_sides
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.words import words_of
 
 STEP_S = 0.5
 TIMES = np.arange(0, 18, STEP_S)
@@ -59,7 +60,7 @@ def scene(other, own=None, lanes=None):
 def told(other, own=None, lanes=None):
     """Whether it is held up, by state; the same in the mirror."""
     found = scene(other, own, lanes)
-    rows = told_on_both_sides(oncoming_conflicts, found, ("1",))["holds_up_oncoming"]
+    rows = told_on_both_sides(words_of(oncoming_conflicts), found, ("1",))["holds_up_oncoming"]
     *of_other, of_parked = [[str(value) for value in row] for row in rows]
     assert set(of_parked) == {"False"}
     # Who stands on a lane beside ego's from start to end is no object of the drive
@@ -100,7 +101,7 @@ def test_one_that_brakes_for_somebody_ahead():
     """11 m ahead of it another one brakes, which may be for ego; this one has to brake for that."""
     first = replace(coming(70, (2.0, 8.5)), id="6")
     found = recording(two_ways(), [ego(), coming(85, (2.0, 8.5)), first, OBSTACLE], step_s=STEP_S)
-    rows = told_on_both_sides(oncoming_conflicts, found, ("1",))["holds_up_oncoming"]
+    rows = told_on_both_sides(words_of(oncoming_conflicts), found, ("1",))["holds_up_oncoming"]
     assert sum("?" in map(str, row) for row in rows) == 1
 
 

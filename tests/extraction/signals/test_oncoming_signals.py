@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map import priority_signals
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import goes_first
 from rulec.extraction.tracks.at_junctions.junctions import junctions_of
 from rulec.extraction.tracks.mirror import mirrored_recording
@@ -20,6 +20,7 @@ from rulec.recordings.sumo.net import read_net
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 NETS = sorted((Path(__file__).parents[2] / "worlds/stored").glob("*.net.xml"))
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
@@ -74,8 +75,8 @@ def at(reaches_s, mps=10.0):
 def told(way, road=None, ego=EGO, turn="on", line=TURN, kind="car", route=("1", "2", "3")):
     found = recording(road or crossroads(), [along(7, line, ego), along(8, its(turn), way, kind)])
     found = replace(found, step_s=STEP_S)
-    right = priority_signals(context_of(found, route))
-    left = priority_signals(context_of(mirrored_recording(found), route, "left"))
+    right = words_of(priority_signals)(context_of(found, route))
+    left = words_of(priority_signals)(context_of(mirrored_recording(found), route, "left"))
     word = "in_way_of_oncoming"
     assert values_of(right, word).tolist() == values_of(left, word).tolist()
     assert unknown_in(right, word).tolist() == unknown_in(left, word).tolist()
@@ -302,7 +303,7 @@ def test_a_recording_that_ends_before_it_is_clear(reaches_s, unknown):
     """It ends at 6 s, when ego is on the other's lane until about 7.2 s."""
     road = crossroads()
     found = recording(road, [along(7, TURN, EGO[:24]), along(8, its("on"), at(reaches_s)[:24])])
-    signals = priority_signals(context_of(replace(found, step_s=STEP_S), ("1", "2", "3")))
+    signals = words_of(priority_signals)(context_of(replace(found, step_s=STEP_S), ("1", "2", "3")))
     assert not values_of(signals, "in_way_of_oncoming").any()
     assert unknown_in(signals, "in_way_of_oncoming").any() == unknown
 
@@ -313,7 +314,7 @@ def test_one_that_is_lost_from_sight_may_have_come():
     found = replace(found, step_s=STEP_S)
     for complete, unknown in ((frozenset(), True), (frozenset({"arrivals"}), False)):
         lost = replace(found, complete=complete)
-        signals = priority_signals(context_of(lost, ("1", "2", "3")))
+        signals = words_of(priority_signals)(context_of(lost, ("1", "2", "3")))
         assert not values_of(signals, "in_way_of_oncoming").any()
         assert unknown_in(signals, "in_way_of_oncoming").any() == unknown
 

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
+from rulec.extraction.signals.conduct import being_overtaken, overtaking_signals
 from support.builders.drive_contexts import told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.words import words_of
 
 STEPS = 24
 """Half a second each."""
@@ -26,7 +27,7 @@ def driving(number, start, speeds, ys):
 def told(other, ego_ys=(0.0,) * STEPS, road=ROAD, route=("1",)):
     ego = driving(7, 100, [10.0] * STEPS, ego_ys)
     found = replace(recording(road, [ego, other]), complete=frozenset({"arrivals"}))
-    words = told_on_both_sides(overtaking_signals, found, route)[WORD]
+    words = told_on_both_sides(words_of(overtaking_signals, being_overtaken), found, route)[WORD]
     return "".join({"True": "T", "False": "F"}.get(str(value), "?") for value in words)
 
 

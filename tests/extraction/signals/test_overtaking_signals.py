@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
-from rulec.extraction.signals.flow_signals import flow_signals
+from rulec.extraction.signals import flow_signals
+from rulec.extraction.signals.conduct import being_overtaken, overtaking_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of, line, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 from support.signal_arrays import possible_in, unknown_in, values_of
+from support.words import words_of
 
 
 @pytest.mark.parametrize(
@@ -23,7 +24,9 @@ def test_who_sets_off_beside_others_is_not_told_to_be_overtaken(mps, ago_s, know
     ego = vehicle(7, {k: (min(k, 4) * mps / 2 + max(k - 4, 0) * 5.0, 0) for k in range(last + 6)})
     place = ego.states[last].x
     other = vehicle(8, {k: (place + (k - last) * 7.5, 4.0) for k in range(last - 4, last + 6)})
-    found = overtaking_signals(context_of(recording(lanes(2), [ego, other])))
+    found = words_of(overtaking_signals, being_overtaken)(
+        context_of(recording(lanes(2), [ego, other]))
+    )
     assert possible_in(found, "being_overtaken")[last]
     assert found.whom["being_overtaken"][last] == ("8",)
     assert unknown_in(found, "being_overtaken")[last] == (not known)
@@ -37,7 +40,7 @@ def test_who_falls_back_before_it_gets_past_may_have_given_up(slowest, known):
     ego = steady(7, 0, 0, 10, steps=20)
     other = vehicle(8, {k: (float(x[k]), 4.0) for k in range(20)})
     whole = replace(recording(lanes(2), [ego, other]), complete=frozenset({"arrivals"}))
-    found = overtaking_signals(context_of(whole))
+    found = words_of(overtaking_signals, being_overtaken)(context_of(whole))
     assert values_of(found, "being_overtaken")[0] == known
     assert unknown_in(found, "being_overtaken")[0] == (not known)
 
@@ -63,7 +66,9 @@ def test_who_gets_up_speed_from_a_crawl_sets_off(speeds, at, known):
     places = runs(speeds)
     passes = {k: (places[at][0] + (k - at) * 9.0, 4.0) for k in range(at - 4, at + 8)}
     ego = vehicle(7, places | {at + k: (places[at][0] + 6.0 * k, 0.0) for k in range(1, 8)})
-    found = overtaking_signals(context_of(recording(lanes(2), [ego, vehicle(8, passes)])))
+    found = words_of(overtaking_signals, being_overtaken)(
+        context_of(recording(lanes(2), [ego, vehicle(8, passes)]))
+    )
     assert possible_in(found, "being_overtaken")[at]
     assert unknown_in(found, "being_overtaken")[at] == (not known)
 
@@ -76,7 +81,9 @@ def test_who_has_gained_speed_since_its_drive_began_may_be_getting_it_up(steady_
     passes = {k: (places[at][0] + (k - at) * 9.0, 4.0) for k in range(at - 4, at + 6)}
     found = recording(lanes(2), [vehicle(7, places), vehicle(8, passes)])
     # All traffic is in it, so that nobody who is as fast at first has stood just before
-    signals = overtaking_signals(context_of(replace(found, complete=frozenset({"arrivals"}))))
+    signals = words_of(overtaking_signals, being_overtaken)(
+        context_of(replace(found, complete=frozenset({"arrivals"})))
+    )
     assert possible_in(signals, "being_overtaken")[at]
     assert unknown_in(signals, "being_overtaken")[at] == (not known)
 
@@ -87,7 +94,7 @@ def test_a_drive_that_begins_beside_one_that_overtakes_may_begin_in_gaining_spee
     ego = vehicle(7, runs([10.0 + gained * k for k in range(16)]))
     other = vehicle(8, {k: (9.0 * k, 4.0) for k in range(16)})
     found = replace(recording(lanes(2), [ego, other]), complete=frozenset({"arrivals"}))
-    signals = overtaking_signals(context_of(found))
+    signals = words_of(overtaking_signals, being_overtaken)(context_of(found))
     assert possible_in(signals, "being_overtaken")[0]
     assert unknown_in(signals, "being_overtaken")[0] == (not known)
 
@@ -99,7 +106,9 @@ def test_who_had_to_brake_regains_its_speed(before, known):
     places, at = runs(speeds), 18
     passes = {k: (places[at][0] + (k - at) * 13.0, 4.0) for k in range(at - 4, at + 6)}
     ego = vehicle(7, places)
-    found = overtaking_signals(context_of(recording(lanes(2), [ego, vehicle(8, passes)])))
+    found = words_of(overtaking_signals, being_overtaken)(
+        context_of(recording(lanes(2), [ego, vehicle(8, passes)]))
+    )
     assert possible_in(found, "being_overtaken")[at]
     assert unknown_in(found, "being_overtaken")[at] == (not known)
 
@@ -114,7 +123,9 @@ def test_who_gains_speed_may_have_braked_before_it_was_seen(first_s, gained, kno
     places = runs([16.0] * (at - 2) + [16.0 + gained * k for k in range(8)])
     passes = {k: (places[at][0] + (k - at) * 11.0, 4.0) for k in range(at - 4, at + 6)}
     found = recording(lanes(2), [vehicle(7, places), vehicle(8, passes)])
-    signals = overtaking_signals(context_of(replace(found, complete=frozenset(complete))))
+    signals = words_of(overtaking_signals, being_overtaken)(
+        context_of(replace(found, complete=frozenset(complete)))
+    )
     assert possible_in(signals, "being_overtaken")[at]
     assert unknown_in(signals, "being_overtaken")[at] == (not (known or complete))
 
@@ -140,7 +151,9 @@ def test_who_has_turned_into_a_road_gets_up_speed_yet(ago_s, known):
         np.array([(118.0, 100.0), (118.0, -300.0)]),
         114 + 8.0 * ago_s + 7.5 * (np.arange(last + 6) - last),
     )
-    found = overtaking_signals(context_of(recording(road, [ego, beside]), ("1", "2", "3")))
+    found = words_of(overtaking_signals, being_overtaken)(
+        context_of(recording(road, [ego, beside]), ("1", "2", "3"))
+    )
     assert possible_in(found, "being_overtaken")[last]
     assert unknown_in(found, "being_overtaken")[last] == (not known)
 
@@ -152,7 +165,9 @@ def test_who_gets_up_speed_on_a_lane_that_joins_is_not_overtaken(types):
         straight(2, -100, 300, 4.0, right_of=1),
     ]
     bodies = [steady(7, 0, 0, 21, steps=12), steady(8, 0, 4.0, 26, steps=12)]
-    found = overtaking_signals(context_of(recording(road, bodies), route=("1",)))
+    found = words_of(overtaking_signals, being_overtaken)(
+        context_of(recording(road, bodies), route=("1",))
+    )
     assert values_of(found, "being_overtaken")[0] == (not types)
     assert not unknown_in(found, "being_overtaken").any() or not types
 
@@ -169,7 +184,9 @@ def test_who_has_joined_gets_up_speed_yet(ago_s, known):
     ego = vehicle(7, {k: (10.5 * k, 0.0 if k < 2 else 4.0) for k in range(last + 4)}, speed=21)
     passes = {k: (10.5 * last + 13.0 * (k - last), 8.0) for k in range(last + 4)}
     other = vehicle(8, passes, speed=26)
-    found = overtaking_signals(context_of(recording(road, [ego, other]), route=("1",)))
+    found = words_of(overtaking_signals, being_overtaken)(
+        context_of(recording(road, [ego, other]), route=("1",))
+    )
     assert possible_in(found, "being_overtaken")[last]
     assert unknown_in(found, "being_overtaken")[last] == (not known)
 
@@ -194,7 +211,7 @@ def test_who_has_come_onto_a_larger_road_gets_up_speed_yet(ago_s, known):
     for y, route, told in ((0.0, ("1", "4"), known), (4.0, ("2", "5"), True)):
         ego = vehicle(7, {k: (10.5 * k, y if k < 3 else 4.0) for k in range(last + 4)}, speed=21)
         context = context_of(recording(road, [ego, other]), route=route)
-        found = overtaking_signals(context)
+        found = words_of(overtaking_signals, being_overtaken)(context)
         assert possible_in(found, "being_overtaken")[last]
         assert unknown_in(found, "being_overtaken")[last] == (not told)
 
@@ -203,7 +220,9 @@ def test_who_has_come_onto_a_larger_road_gets_up_speed_yet(ago_s, known):
 def test_who_may_have_stood_before_anybody_saw_it_may_set_off(speed, known):
     """To 9 m/s it takes 4.5 s, to 21 m/s 10.5 s."""
     ego, other = steady(7, 0, 0, speed, steps=12), steady(8, 0, 4.0, speed + 5, steps=12)
-    found = overtaking_signals(context_of(recording(lanes(2), [ego, other])))
+    found = words_of(overtaking_signals, being_overtaken)(
+        context_of(recording(lanes(2), [ego, other]))
+    )
     assert possible_in(found, "being_overtaken")[0]
     assert unknown_in(found, "being_overtaken")[0] == (not known)
 
@@ -213,7 +232,7 @@ def test_who_is_put_into_all_traffic_slowly_sets_off(speed, known):
     """Simulators begin drives amid the road, at any speed: who is slow then gets going."""
     ego, other = steady(7, 0, 0, speed, steps=12), steady(8, 0, 4.0, speed + 5, steps=12)
     whole = replace(recording(lanes(2), [ego, other]), complete=frozenset({"arrivals"}))
-    found = overtaking_signals(context_of(whole))
+    found = words_of(overtaking_signals, being_overtaken)(context_of(whole))
     assert possible_in(found, "being_overtaken")[0]
     assert unknown_in(found, "being_overtaken")[0] == (not known)
 
@@ -221,7 +240,12 @@ def test_who_is_put_into_all_traffic_slowly_sets_off(speed, known):
 def overtakes(x, speed, y=0.0, **more):
     """Is ego, at 20 m/s on the left one of two lanes, overtaking a vehicle?"""
     found = recording(lanes(2), [steady(7, 0, 4, speed=20), steady(8, x, y, speed=speed)])
-    return bool(values_of(overtaking_signals(context_of(found, ("1",), **more)), "overtaking")[0])
+    return bool(
+        values_of(
+            words_of(overtaking_signals, being_overtaken)(context_of(found, ("1",), **more)),
+            "overtaking",
+        )[0]
+    )
 
 
 def test_overtaking_is_passing_a_slower_vehicle_on_its_far_side():
@@ -241,7 +265,9 @@ def coming(*others, y=4.0, side="right", count=2, steps=12, **thresholds):
     ego = steady(7, 0, 0, steps=steps)
     bodies = [steady(8 + k, x, y, speed, steps) for k, (x, speed) in enumerate(others)]
     found = replace(recording(lanes(count), [ego, *bodies]), complete=frozenset({"arrivals"}))
-    found = overtaking_signals(context_of(found, ("1",), side, **thresholds))
+    found = words_of(overtaking_signals, being_overtaken)(
+        context_of(found, ("1",), side, **thresholds)
+    )
     return (
         None
         if unknown_in(found, "being_overtaken")[0]
@@ -274,7 +300,14 @@ def test_on_the_mark_the_next_lane_is_the_one_that_ego_moves_into(y, overtaken):
     """Ego, 2 m wide, comes from the lane up to y = 2; one passes two lanes farther, at y = 8."""
     bodies = [steady(7, 0, y, 10, 40), steady(8, 0, 8, 15, 40)]
     context = context_of(recording(lanes(3), bodies), near_m=200)
-    assert bool(possible_in(overtaking_signals(context), "being_overtaken")[0]) == overtaken
+    assert (
+        bool(
+            possible_in(words_of(overtaking_signals, being_overtaken)(context), "being_overtaken")[
+                0
+            ]
+        )
+        == overtaken
+    )
 
 
 def test_who_gets_past_overtakes_and_the_recording_may_end_before():
@@ -282,7 +315,7 @@ def test_who_gets_past_overtakes_and_the_recording_may_end_before():
     places = {k: (-3 + 2 * min(k, 2) + 5.0 * k, 4.0) for k in range(40)}
     ego, other = steady(7, 0, 0, steps=40), vehicle(8, places)
     context = context_of(recording(lanes(2), [ego, other]), near_m=200)
-    found = overtaking_signals(context)
+    found = words_of(overtaking_signals, being_overtaken)(context)
     # And so it does 10 s later
     assert not values_of(found, "being_overtaken").any()
     assert not unknown_in(found, "being_overtaken")[0]
@@ -308,7 +341,9 @@ def test_who_regains_its_speed_after_a_jam_may_be_overtaken_meanwhile(pauses, kn
     other = along(8, np.array([(-900.0, 4.0), (1900.0, 4.0)]), 900 + passes)
     road = [straight(1, 0, 900, left_of=2), straight(2, 0, 900, 4.0, right_of=1)]
     found = replace(recording(road, [ego, other]), complete=frozenset({"arrivals"}))
-    told = overtaking_signals(context_of(found, near_m=300), frozenset({"being_overtaken"}))
+    told = words_of(overtaking_signals, being_overtaken)(
+        context_of(found, near_m=300), frozenset({"being_overtaken"})
+    )
     assert possible_in(told, "being_overtaken")[40]
     assert bool(unknown_in(told, "being_overtaken")[40]) != known
 
@@ -317,8 +352,10 @@ def test_nobody_is_overtaken_where_all_lanes_queue():
     # All drive at 10 m/s, but those beside ego are a little faster
     queues = [*line(10, 2), *line(12, 3, y=4.0, start=0.0, number=30)]
     context = context_of(recording(lanes(2), [steady(7, 0, 0), *queues]), ("1",))
-    assert possible_in(flow_signals(context), "dense_all_lanes")[0]
-    assert not values_of(overtaking_signals(context), "being_overtaken")[0]
+    assert possible_in(words_of(flow_signals)(context), "dense_all_lanes")[0]
+    assert not values_of(words_of(overtaking_signals, being_overtaken)(context), "being_overtaken")[
+        0
+    ]
     assert coming((0, 12)) is True
 
 
@@ -326,7 +363,7 @@ def test_overtaking_looks_as_far_as_ten_seconds_of_the_difference_need():
     # 200 m at 25 m/s more are 8 s, and farther than what counts for anything else
     ego, slow = steady(7, -90, 4.0, speed=40), steady(8, 114, 0, speed=15)
     context = context_of(recording(lanes(2), [ego, slow]), ("2",))
-    assert values_of(overtaking_signals(context), "overtaking")[0]
+    assert values_of(words_of(overtaking_signals, being_overtaken)(context), "overtaking")[0]
     assert not context.relevant[0, 0]
 
 
@@ -335,7 +372,7 @@ def test_overtaking_begins_when_ego_pulls_out():
     ways = {k: (10.0 * k, min(max(k - 4, 0) * 2.0, 4.0)) for k in range(12)}
     slow = vehicle(8, {k: (90 + 5.0 * k, 0) for k in range(12)}, speed=10)
     context = context_of(recording(lanes(2), [vehicle(7, ways, speed=20), slow]))
-    signals = overtaking_signals(context)
+    signals = words_of(overtaking_signals, being_overtaken)(context)
     overtakes = values_of(signals, "overtaking").tolist()
     begins = values_of(signals, "begins_to_overtake").tolist()
     assert not overtakes[3]
@@ -343,7 +380,9 @@ def test_overtaking_begins_when_ego_pulls_out():
     assert begins[: overtakes.index(True)] == [True] * overtakes.index(True)
     # Who stays behind does not
     stays = context_of(recording(lanes(2), [steady(7, 0, 0, speed=20), slow]))
-    assert not values_of(overtaking_signals(stays), "begins_to_overtake").any()
+    assert not values_of(
+        words_of(overtaking_signals, being_overtaken)(stays), "begins_to_overtake"
+    ).any()
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
@@ -366,7 +405,9 @@ def test_who_overtakes_beyond_the_middle_does_so_from_going_there_until_it_is_ba
     other = vehicle(8, {k: (float(x), 0.0) for k, x in enumerate(slow)}, speed=10)
     found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego, other])
     found = mirrored_recording(found) if side == "left" else found
-    signals = overtaking_signals(context_of(found, side=side), frozenset({"overtaking"}))
+    signals = words_of(overtaking_signals, being_overtaken)(
+        context_of(found, side=side), frozenset({"overtaking"})
+    )
     told = zip(values_of(signals, "overtaking"), unknown_in(signals, "overtaking"), strict=True)
     assert "".join("?" if dark else "FT"[int(value)] for value, dark in told) == past
 
@@ -377,7 +418,9 @@ def test_whose_drive_begins_beyond_the_middle_may_have_overtaken(before, told):
     ys = [*[0] * before, *[3.5] * (14 - before), 0, 0]
     ego = vehicle(7, {k: (7.0 * k, y) for k, y in enumerate(ys)}, speed=14)
     found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego])
-    signals = overtaking_signals(context_of(found), frozenset({"overtaking"}))
+    signals = words_of(overtaking_signals, being_overtaken)(
+        context_of(found), frozenset({"overtaking"})
+    )
     words = zip(values_of(signals, "overtaking"), unknown_in(signals, "overtaking"), strict=True)
     assert "".join("?" if dark else "FT"[int(value)] for value, dark in words) == told
 
@@ -388,7 +431,10 @@ def test_who_overtakes_and_is_back_for_half_a_second_overtakes_meanwhile():
     ego = vehicle(7, {k: (7.0 * k, y) for k, y in enumerate(ys)}, speed=14)
     other = vehicle(8, {k: (50 + 5.0 * k, 0.0) for k in range(len(ys))}, speed=10)
     found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego, other])
-    told = values_of(overtaking_signals(context_of(found), frozenset({"overtaking"})), "overtaking")
+    told = values_of(
+        words_of(overtaking_signals, being_overtaken)(context_of(found), frozenset({"overtaking"})),
+        "overtaking",
+    )
     assert "".join("FT"[int(value)] for value in told) == "FFFTTTTTTTTTTTTF"
 
 
@@ -406,7 +452,9 @@ def test_a_cycle_is_overtaken_but_on_a_lane_of_its_own(kind, past):
         lanelet(2, [(500, 4), (0, 4)]),
         straight(3, 0, 500, -3, 2.0, left_of=1, types=frozenset({kind})),
     ]
-    told = overtaking_signals(context_of(recording(roads, [ego, cycle])), frozenset({"overtaking"}))
+    told = words_of(overtaking_signals, being_overtaken)(
+        context_of(recording(roads, [ego, cycle])), frozenset({"overtaking"})
+    )
     assert "".join("FT"[int(value)] for value in values_of(told, "overtaking")) == past
     assert not unknown_in(told, "overtaking").any()
 
@@ -419,7 +467,9 @@ def test_who_overtakes_over_the_middle_does_so_as_soon_as_its_side_is_over_it(si
     slow = vehicle(8, {k: (30 + 2.5 * k, 0.0) for k in range(len(ys))}, speed=5)
     found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego, slow])
     found = mirrored_recording(found) if side == "left" else found
-    signals = overtaking_signals(context_of(found, side=side), frozenset({"overtaking"}))
+    signals = words_of(overtaking_signals, being_overtaken)(
+        context_of(found, side=side), frozenset({"overtaking"})
+    )
     assert (
         "".join("FT"[int(value)] for value in values_of(signals, "overtaking")) == "FFTTTTTTTTTTFF"
     )
@@ -435,7 +485,7 @@ def test_who_goes_out_behind_another_one_may_have_meant_to_pass_whom_that_one_pa
     slow = vehicle(8, {k: (180 + 5.0 * k, 0.0) for k in range(len(ys))}, speed=10)
     roads = [straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])]
     for others, perhaps in (([slow], False), ([first, slow], True)):
-        signals = overtaking_signals(
+        signals = words_of(overtaking_signals, being_overtaken)(
             context_of(recording(roads, [ego, *others])), frozenset({"overtaking"})
         )
         assert not values_of(signals, "overtaking").any()

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map import priority_signals
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 EAST = [
@@ -35,7 +36,7 @@ def told(road, places, path=TO_NORTH, others=()):
     ego = vehicle(7, {k: (-20 + 10 * t, 0) for k, t in enumerate(TIMES)}, speed=10)
     other = along(8, np.array(path), np.asarray(places) + 90)
     found = replace(recording([*EAST, *road], [ego, other, *others]), complete=frozenset({"YIELD"}))
-    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    signals = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     return bool(values_of(signals, SIDE).any()), bool(unknown_in(signals, SIDE).any())
 
 
@@ -125,7 +126,7 @@ def test_one_that_joins_ahead_of_a_slow_one_does_not_disturb_it(mps, sure):
     # Its front is at x = 0.5, before the bend comes into its lane, a quarter of a second later
     other = along(8, np.array([(-90, 0), (90, 0)]), 90 - 1.5 + mps * (TIMES - 6.25))
     found = replace(recording(roads, [ego, other]), complete=frozenset({"YIELD"}))
-    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    signals = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     side = "conflict_from_left"
     assert bool(values_of(signals, side).any()) == sure
     assert bool(unknown_in(signals, side).any()) != sure

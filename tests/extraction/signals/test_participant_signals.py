@@ -5,14 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rulec.extraction.signals.map import lanes_ahead
 from rulec.extraction.signals.map.lanes_ahead import junctions_ahead
 from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distances
-from rulec.extraction.signals.participants.participant_signals import participant_signals
+from rulec.extraction.signals.participants import (
+    following_signals,
+    participant_conduct,
+    participant_signals,
+)
 from rulec.trace.cells import Cells
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 from support.signal_arrays import bounds_of, letters, possibly_said, said, unknown_in, values_of
+from support.words import words_of
 
 STEP_S = 0.5
 
@@ -24,7 +30,9 @@ def context(*others, ego_speed=10.0, **thresholds):
 
 def about(*others, **more):
     """The first state of each signal, of the first of the others."""
-    signals = participant_signals(context(*others, **more))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context(*others, **more)
+    )
     return {name: possibly_said(signals, name).flat[0] for name in signals.about}
 
 
@@ -59,13 +67,17 @@ def test_relations_and_distances():
     ids=["at first", "later", "comes into sight"],
 )
 def test_ego_may_be_passing_who_is_beside_it_at_first(other, unknown):
-    signals = participant_signals(context(other))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context(other)
+    )
     assert unknown_in(signals, "station")[0].tolist() == unknown
     assert not unknown_in(signals, "lateral").any()
 
 
 def test_the_papers_side_of_who_is_behind_on_another_lane_at_first_says_as_little():
-    signals = participant_signals(context(steady(8, 20, 4), steady(9, 20, 0)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context(steady(8, 20, 4), steady(9, 20, 0))
+    )
     assert values_of(signals, "position")[:, 1].tolist() == ["r", "b"]
     assert unknown_in(signals, "position").tolist() == [[True] + [False] * 3, [False] * 4]
 
@@ -106,7 +118,12 @@ def test_the_safe_distance_is_that_of_two_emergency_brakings():
     assert safe_distance(context(steady(8, 30, 0, speed=-5)))[0] == pytest.approx(16.25)
 
     def kept(x):
-        return letters(participant_signals(context(steady(8, x, 0, speed=5))), "safe_gap")[0]
+        return letters(
+            words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+                context(steady(8, x, 0, speed=5))
+            ),
+            "safe_gap",
+        )[0]
 
     # The gap is 4 m less than x; speeds and places are known within a metre's worth of it
     assert (kept(20.5), kept(18.7), kept(17.0)) == ("T", "?", "F")
@@ -157,7 +174,9 @@ def test_ego_has_seen_one_stand_that_it_can_stop_behind(ahead, brakes, word):
     way = [-5.25, 0.0, 4.25, 7.5, 9.75, 11.0] if brakes else [-5.0, 0.0, 5.0, 10.0, 15.0, 20.0]
     ego = vehicle(7, {k: (x, 0) for k, x in enumerate(way)}, speed=9.5)
     stands = vehicle(8, dict.fromkeys(range(6), (ahead, 0)), speed=0)
-    signals = participant_signals(context_of(recording(lanes(1), [ego, stands])))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(lanes(1), [ego, stands]))
+    )
     # At 0 m, where a second's mean is of 9.5 m/s, or 10
     unknown = bool(unknown_in(signals, "safe_gap")[0, 1])
     assert ("?" if unknown else bool(values_of(signals, "safe_gap")[0, 1])) == word
@@ -177,7 +196,9 @@ def test_what_is_briefly_and_slightly_too_near_may_be_what_boxes_err(short_m, st
     ahead, longer = (steady(8, 14.5, 0, steps=10, length=4.0 + m) for m in (0, 1 + 2 * short_m))
     drawn = {k: (longer if near[k] else ahead).outlines[k] for k in range(10)}
     bodies = [steady(7, 0, 0, steps=10), replace(ahead, outlines=drawn)]
-    signals = participant_signals(context_of(recording(lanes(1), bodies)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(lanes(1), bodies))
+    )
     told = letters(signals, "safe_gap")[1:-1]
     assert told == "".join(("?" if unknown else "F") if short else "T" for short in near)[1:-1]
 
@@ -187,7 +208,9 @@ def test_the_gap_to_one_that_ego_parts_from_soon_is_moot(leaves_at, unknown):
     """Steps are of 0.5 s, and in the state 4 s later it is in the other lane, or not yet."""
     places = {k: (10 + 2.5 * k, 4.0 if k >= leaves_at else 0.0) for k in range(10)}
     bodies = [steady(7, 0, 0, speed=10.0, steps=10), vehicle(8, places, speed=5.0)]
-    signals = participant_signals(context_of(recording(lanes(2), bodies)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(lanes(2), bodies))
+    )
     assert not values_of(signals, "safe_gap")[0, 0]
     assert unknown_in(signals, "safe_gap")[0, 0] == unknown
 
@@ -202,7 +225,9 @@ def test_one_that_leaves_in_a_junction_may_stop_before(speed, unknown):
     inside = frozenset({"intersection"})
     there += [straight("2", 15, 300, predecessors=(1,), types=inside, junction="x", width=12.0)]
     found = recording(there, [ego, vehicle(8, places, speed=speed)])
-    signals = participant_signals(context_of(found, route=("1", "2")))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(found, route=("1", "2"))
+    )
     assert not values_of(signals, "safe_gap")[0, 0]
     assert unknown_in(signals, "safe_gap")[0, 0] == unknown
 
@@ -215,7 +240,9 @@ def test_the_gap_to_one_that_ego_swings_out_from_is_moot(across, unknown, way):
     places = {k: (5 * k, way * (1.4 - across * 1.5 + across * k / 2)) for k in range(10)}
     bodies = [vehicle(7, places, speed=10.0), ahead]
     road = [straight("1", -100, 300, width=6.0)]
-    signals = participant_signals(context_of(recording(road, bodies)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(road, bodies))
+    )
     assert not values_of(signals, "safe_gap")[0, 0]
     assert unknown_in(signals, "safe_gap")[0, 0] == unknown
 
@@ -224,11 +251,15 @@ def test_the_gap_to_one_that_ego_swings_out_from_is_moot(across, unknown, way):
 def test_whether_one_that_leaves_within_four_seconds_is_followed_is_unknown(leaves_at, unknown):
     places = {k: (40 + 5 * k, 4.0 if k >= leaves_at else 0.0) for k in range(20)}
     bodies = [steady(7, 0, 0, speed=10.0, steps=20), vehicle(8, places, speed=10.0)]
-    signals = participant_signals(context_of(recording(lanes(2), bodies)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(lanes(2), bodies))
+    )
     assert not values_of(signals, "parts_soon").any()
     assert unknown_in(signals, "parts_soon")[0, 0] == unknown
     # And nobody else's lane matters
-    beside = participant_signals(context(steady(8, 30, 4)))
+    beside = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context(steady(8, 30, 4))
+    )
     assert not unknown_in(beside, "parts_soon").any()
 
 
@@ -240,7 +271,9 @@ def test_one_that_may_be_clear_of_ego_within_four_seconds_may_have_left(aside_m,
     places = {k: (40 + 5 * k, aside_m if k >= 6 else 0.0) for k in range(12)}
     bodies = [steady(7, 0, 0, speed=10.0, steps=12), vehicle(8, places, speed=10.0)]
     found = recording([straight("1", -100, 300, width=8.0)], bodies)
-    signals = participant_signals(context_of(found, place_error_m=error_m))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(found, place_error_m=error_m)
+    )
     assert unknown_in(signals, "parts_soon")[0, 0] == unknown
 
 
@@ -250,7 +283,9 @@ def test_who_leaves_the_lane_of_another_one_does_so_as_measured(seconds, expecte
     places = {k: (k, min(4.0, max(0.0, (k - 10) * 0.8 / seconds))) for k in range(170)}
     bodies = [vehicle(7, places, speed=5.0)]
     bodies.append(vehicle(8, {k: (30 + k, 0.0) for k in range(170)}, speed=5.0))
-    found = participant_signals(context_of(recording(lanes(2), bodies, step_s=0.2)))
+    found = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(lanes(2), bodies, step_s=0.2))
+    )
     assert said(found, "lateral")[0, 0] == "same_lane"
     assert said(found, "lateral")[0, -1] == "left_of"
     assert unknown_in(found, "lateral").any() == expected
@@ -258,9 +293,13 @@ def test_who_leaves_the_lane_of_another_one_does_so_as_measured(seconds, expecte
 
 def test_only_the_next_one_ahead_precedes():
     others = [steady(8, 40, 0), steady(9, 20, 0), steady(10, 12, 4), steady(11, -20, 0)]
-    signals = participant_signals(context(*others))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context(*others)
+    )
     assert values_of(signals, "precedes")[:, 0].tolist() == [False, True, False, False]
-    oncoming = participant_signals(context(steady(8, 30, 0, speed=-5), steady(9, 50, 0)))
+    oncoming = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context(steady(8, 30, 0, speed=-5), steady(9, 50, 0))
+    )
     assert values_of(oncoming, "precedes")[:, 0].tolist() == [False, True]
 
 
@@ -275,12 +314,18 @@ def test_oncoming_moves_against_ego_or_waits_beside_its_lanes():
     stopped = steady(8, 40, 8, **waiting)
     found = context(steady(8, 60, 8, speed=-5))
     assert found.relevant[0].all()
-    assert values_of(participant_signals(found), "oncoming")[0].all()
+    assert values_of(
+        words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(found),
+        "oncoming",
+    )[0].all()
     assert places.states.keys() <= stopped.states.keys()
     # Nor is it overtaken where it backs a little there, or its box drifts, as of one that waits
     backs = context(steady(8, 60, 8, speed=0.5, heading=float(np.pi)))
     assert backs.relevant[0].all()
-    assert values_of(participant_signals(backs), "oncoming")[0].all()
+    assert values_of(
+        words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(backs),
+        "oncoming",
+    )[0].all()
     # Reversing is not coming: it faces ego's way
     assert not about(steady(8, 60, 4, speed=-5, heading=0.0))["oncoming"]
 
@@ -291,10 +336,16 @@ def test_one_that_swerves_as_it_gets_beside_ego_still_comes():
     found = context(along(8, swerve, 5.0 * np.arange(4)))
     angles = np.degrees(np.abs(found.extents.turned[0]))
     assert np.count_nonzero(angles < 120) == 1
-    assert values_of(participant_signals(found), "oncoming")[0].all()
+    assert values_of(
+        words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(found),
+        "oncoming",
+    )[0].all()
     slants = np.array([(30, 4), (24, 17)])
     never = context(along(8, slants, 1.0 * np.arange(4)))
-    assert not values_of(participant_signals(never), "oncoming")[0].any()
+    assert not values_of(
+        words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(never),
+        "oncoming",
+    )[0].any()
 
 
 @pytest.mark.parametrize("kind", ["car", "bicycle", "train"])
@@ -309,7 +360,7 @@ def test_one_that_has_come_on_another_road_waits_for_its_turn(kind):
         states={**turning.states, **comes.states},
         outlines={**turning.outlines, **comes.outlines},
     )
-    junction = participant_signals(
+    junction = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
         context_of(recording(lanes(2), [ego, turning]), elsewhere=elsewhere)
     )
     assert values_of(junction, "oncoming").all()
@@ -324,7 +375,7 @@ def test_what_holds_for_good():
 
 
 def test_in_the_road_is_about_vulnerable_users():
-    signals = participant_signals(
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
         context(steady(8, 30, 0), steady(9, 30, 1, speed=0, kind="pedestrian"))
     )
     assert values_of(signals, "in_the_road")[:, 0].tolist() == [False, True]
@@ -336,7 +387,9 @@ def test_in_the_road_is_about_vulnerable_users():
 )
 def test_people_wait_at_the_outer_edges_of_lanes_which_are_at_2_m_and_6_m(y, told):
     walker = steady(9, 30, y, speed=0, kind="pedestrian", length=0.4, width=0.4)
-    signals = participant_signals(context(walker))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context(walker)
+    )
     unknown = unknown_in(signals, "in_the_road")[0, 0]
     assert told == ("?" if unknown else "FT"[int(values_of(signals, "in_the_road")[0, 0])])
 
@@ -361,7 +414,7 @@ def test_people_wait_at_the_edges_of_the_lanes_beside_them_not_beside_ego(x, y, 
         straight(4, 60, 100, -4, successors=(3,)),
     ]
     walker = steady(9, x, y, speed=0, kind="pedestrian", length=0.4, width=0.4)
-    signals = participant_signals(
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
         context_of(recording(road, [steady(7, 30, 0), walker]), ("1", "2"))
     )
     unknown = unknown_in(signals, "in_the_road")[0, 0]
@@ -383,7 +436,9 @@ def test_a_lane_for_cycles_alone_may_be_a_path_beside_the_road(kind, types, told
     ]
     rider = steady(8, 30, 0, kind=kind, length=0.6, width=0.6)
     ego = steady(7, 0, 4)
-    signals = participant_signals(context_of(recording(both, [ego, rider]), ("2",)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(both, [ego, rider]), ("2",))
+    )
     unknown = unknown_in(signals, "in_the_road")[0, 0]
     assert told == ("?" if unknown else "FT"[int(values_of(signals, "in_the_road")[0, 0])])
 
@@ -395,7 +450,15 @@ def test_who_goes_across_the_road(along, across, goes):
     places = {k: (30 + along * 0.5 * k, across * 0.5 * k) for k in range(3)}
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     context = context_of(recording(lanes(2), [steady(7, 0, 0, steps=3), walker]))
-    assert values_of(participant_signals(context), "goes_across")[0].tolist() == [goes] * 3
+    assert (
+        values_of(
+            words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+                context
+            ),
+            "goes_across",
+        )[0].tolist()
+        == [goes] * 3
+    )
 
 
 @pytest.mark.parametrize(
@@ -420,12 +483,18 @@ def test_who_crosses_goes_on_crossing(ways, goes):
     )
     ego = steady(7, 0, 0, steps=len(x), step_s=0.1)
     context = context_of(recording(lanes(1), [ego, walker], step_s=0.1))
-    told = values_of(participant_signals(context), "goes_across")[0]
+    told = values_of(
+        words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(context),
+        "goes_across",
+    )[0]
     assert told[-1] == goes
     # A car that has crossed and stands blocks the way: it does not cross any more
     car = replace(walker, type="car")
     context = context_of(recording(lanes(1), [ego, car], step_s=0.1))
-    assert not values_of(participant_signals(context), "goes_across")[0, -1]
+    assert not values_of(
+        words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(context),
+        "goes_across",
+    )[0, -1]
 
 
 @pytest.mark.parametrize(
@@ -447,7 +516,9 @@ def test_when_it_is_not_told_whether_one_goes_across(way, begins, told):
     places = dict(enumerate(zip(x, y, strict=True), begins))
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     ego = steady(7, 0, 0, steps=begins + len(x), step_s=0.1)
-    found = participant_signals(context_of(recording(lanes(1), [ego, walker], step_s=0.1)))
+    found = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(lanes(1), [ego, walker], step_s=0.1))
+    )
     unknown = unknown_in(found, "goes_across")[0, -6]
     assert told == ("?" if unknown else "FT"[int(values_of(found, "goes_across")[0, -6])])
 
@@ -460,13 +531,17 @@ def test_who_crosses_is_not_known_to_stand_after_a_hole_in_its_track(hole, told)
     places = {k: (30.0, float(y[k])) for k in there}
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     ego = steady(7, 0, 0, speed=0.5, steps=len(y), step_s=0.1)
-    found = participant_signals(context_of(recording(lanes(1), [ego, walker], step_s=0.1)))
+    found = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(lanes(1), [ego, walker], step_s=0.1))
+    )
     unknown = unknown_in(found, "goes_across")[0, -6]
     assert told == ("?" if unknown else "FT"[int(values_of(found, "goes_across")[0, -6])])
 
 
 def test_who_is_behind_another_one_is_not_followed():
-    signals = participant_signals(context(steady(8, 30, 0), steady(9, 15, 0), steady(6, 20, 4)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context(steady(8, 30, 0), steady(9, 15, 0), steady(6, 20, 4))
+    )
     assert values_of(signals, "one_between")[:, 0].tolist() == [True, False, False]
 
 
@@ -486,7 +561,9 @@ def test_who_stands_at_the_edge_of_a_wide_lane_all_the_time_is_parked(y, more, p
     road = [straight(1, 0, 200, width=6.0)]
     ways = dict.fromkeys(range(4), (30, y))
     found = recording(road, [steady(7, 0, 0, steps=4), vehicle(8, ways, **more)])
-    signals = participant_signals(context_of(found))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(found)
+    )
     assert said(signals, "parked")[0].all() == parked
 
 
@@ -508,7 +585,9 @@ def test_who_stands_in_a_lane_with_hazard_lights_may_have_broken_down(lamps, spe
         [straight(1, 0, 200, left_of=2), straight(2, 0, 200, 4, right_of=1)],
         [steady(7, 0, 0), body],
     )
-    signals = participant_signals(context_of(found))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(found)
+    )
     assert not said(signals, "parked")[0].any()
     assert unknown_in(signals, "parked")[0].all() == (not known)
 
@@ -540,7 +619,9 @@ def test_a_lane_that_ends_at_the_junction_leads_elsewhere(x, goes_on, elsewhere)
     ]
     other = vehicle(8, dict.fromkeys(range(8), (x, 4)), speed=0)
     found = recording(road, [steady(7, 0, 0, speed=10, steps=8), other])
-    signals = participant_signals(context_of(found, ("1", "2", "3")))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(found, ("1", "2", "3"))
+    )
     assert values_of(signals, "leads_elsewhere")[0, 0] == elsewhere
 
 
@@ -578,7 +659,9 @@ def test_who_waits_in_a_junction_having_come_on_another_road_is_not_on_ego_s_way
     places = {k: (120.0, -60.0 + 15 * k) if k < 4 else (120.6, y) for k in range(8)}
     other = vehicle(8, places, "bicycle", length=2, width=0.6, heading=np.pi / 2)
     found = recording(road, [steady(7, 60, 0, speed=10, steps=8), other])
-    signals = participant_signals(context_of(found, ("1", "2", "3")))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(found, ("1", "2", "3"))
+    )
     assert not unknown_in(signals, "leads_elsewhere")[0, -1]
     assert values_of(signals, "leads_elsewhere")[0, -1]
 
@@ -599,7 +682,9 @@ def test_a_lane_behind_a_solid_line_may_lead_elsewhere_beyond_the_map(mark, x, c
     road[0] = replace(road[0], left_mark=mark)
     bodies = [steady(7, x - 20, 0, steps=4), vehicle(8, dict.fromkeys(range(4), (x, 4)), speed=0)]
     found = replace(recording(road, bodies), complete=frozenset(complete))
-    signals = participant_signals(context_of(found))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(found)
+    )
     assert unknown_in(signals, "leads_elsewhere")[0, 0] == unknown
     assert not values_of(signals, "leads_elsewhere")[0, 0]
 
@@ -616,7 +701,9 @@ def test_the_time_to_a_collision_is_of_who_is_ahead_and_slower(y, speed, expecte
 
 def test_the_bounds_of_the_time_to_a_collision():
     # 26 m to 5 cm, and 5 m/s to 0.14 m/s, the root of the sum of two squares of 0.1
-    signals = participant_signals(context(steady(8, 30, 0, speed=5.0)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context(steady(8, 30, 0, speed=5.0))
+    )
     low, high = (bound[1] for bound in bounds_of(signals, "time_to_collision"))
     now = values_of(signals, "time_to_collision")[1]
     assert low < now < high
@@ -660,7 +747,9 @@ def test_where_a_lane_leads_that_others_beyond_have_the_number_of(ways, goes, wo
     waits = vehicle(8, dict.fromkeys(range(8), (90, 4)), speed=0)
     other = waits if path is None else along(8, np.array(path), way)
     found = recording(road, [steady(7, 0, 0, speed=10, steps=10), other])
-    signals = participant_signals(context_of(found, ("1", "2", "3")))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(found, ("1", "2", "3"))
+    )
     unknown = bool(unknown_in(signals, "leads_elsewhere")[0, 0])
     assert ("?" if unknown else bool(values_of(signals, "leads_elsewhere")[0, 0])) == word
 
@@ -670,7 +759,9 @@ def test_the_gap_to_one_that_is_lost_as_it_goes_aside_is_moot(drift, unknown):
     """Steps are of 0.5 s: 0.2 m are 0.4 m/s. It is recorded for six states, ego for ten."""
     places = {k: (10 + 2.5 * k, drift * k) for k in range(6)}
     bodies = [steady(7, 0, 0, speed=10.0, steps=10), vehicle(8, places, speed=5.0)]
-    signals = participant_signals(context_of(recording(lanes(2), bodies)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(lanes(2), bodies))
+    )
     assert not values_of(signals, "safe_gap")[0, 2]
     assert unknown_in(signals, "safe_gap")[0, 2] == unknown
 
@@ -680,7 +771,9 @@ def test_the_gap_to_one_that_begins_to_go_aside_and_is_lost_is_moot(drift, unkno
     """It is seen up to 2.5 s, 1 m farther aside, and has 2.5 s more for the second metre."""
     places = {k: (10 + 2.5 * k, drift * max(k - 3, 0)) for k in range(6)}
     bodies = [steady(7, 0, 0, speed=10.0, steps=10), vehicle(8, places, speed=5.0)]
-    signals = participant_signals(context_of(recording([straight(1, -100, 300, 0, 8.0)], bodies)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording([straight(1, -100, 300, 0, 8.0)], bodies))
+    )
     assert not values_of(signals, "safe_gap")[0, 2]
     assert unknown_in(signals, "safe_gap")[0, 2] == unknown
 
@@ -702,7 +795,9 @@ def test_who_closes_in_and_goes_aside_may_have_changed_lanes_unseen(
     ego = {k: (5 * k, across * k / 2) for k in range(last + 1 if lost == "both" else 10)}
     ahead = {k: (10 + other_mps / 2 * k, 0.0) for k in range(last + 1)}
     bodies = [vehicle(7, ego, speed=10.0), vehicle(8, ahead, speed=other_mps)]
-    signals = participant_signals(context_of(recording(lanes(2), bodies)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(lanes(2), bodies))
+    )
     assert not values_of(signals, "safe_gap")[0, 0]
     assert unknown_in(signals, "safe_gap")[0, 0] == unknown
 
@@ -716,7 +811,9 @@ def test_the_gap_to_one_that_ego_goes_past_on_a_broad_lane_is_moot(aside, unknow
         vehicle(number, {k: (x + 5 * k, sign * y) for k, y in enumerate(drifts)}, speed=mps)
         for number, x, sign, mps in ((7, 0, -1, 10.0), (8, 8, 1, 10.0))
     )
-    signals = participant_signals(context_of(recording(road, [ego, other]), ("1",)))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(road, [ego, other]), ("1",))
+    )
     assert not values_of(signals, "safe_gap")[0, 0]
     assert unknown_in(signals, "safe_gap")[0, 0] == unknown
 
@@ -731,5 +828,7 @@ def test_lanes_that_part_outside_of_a_junction_lead_elsewhere(end, elsewhere):
         straight(6, 112, 300, 4, predecessors=(5,)),
     ]
     bodies = [steady(7, 60, 0, steps=4), steady(8, 80, 4, steps=4)]
-    signals = participant_signals(context_of(recording(road, bodies), ("1", "2")))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(recording(road, bodies), ("1", "2"))
+    )
     assert values_of(signals, "leads_elsewhere")[0, 0] == elsewhere

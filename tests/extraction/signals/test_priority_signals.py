@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.junction_signals import junction_signals
-from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map import junction_signals, priority_signals
 from rulec.extraction.tracks.at_junctions.junctions import junctions_of
 from rulec.recordings.recording import Recording
 from rulec.recordings.sumo.lanelets import net_lanelets
@@ -16,6 +15,7 @@ from rulec.scenario.recorded.reference_line import turn
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 NETS = sorted((Path(__file__).parents[2] / "worlds/stored").glob("*.net.xml"))
 INSIDE = frozenset({"intersection"})
@@ -45,7 +45,7 @@ def signals(road, y, heading, complete=("YIELD",)):
     ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
     other = vehicle(8, {k: (0, y(k / 2)) for k in STEPS}, speed=10, heading=heading)
     found = replace(recording([*EAST, *road], [ego, other]), complete=frozenset(complete))
-    return priority_signals(context_of(found, route=("1", "2", "3")))
+    return words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,9 @@ def test_a_drive_that_breaks_in_a_junction():
     ego = vehicle(7, {k: (-50 + 2 * k, 0) for k in range(60)}, speed=10)
     found = replace(recording(LINK, [ego]), complete=frozenset({"YIELD", "PRIORITY"}))
     route = ("1", "2", "9", "10", "11")
-    told = values_of(priority_signals(context_of(found, route, until=24)), "unregulated_junction")
+    told = values_of(
+        words_of(priority_signals)(context_of(found, route, until=24)), "unregulated_junction"
+    )
     # Its front is 50 m before the first junction in state 0, its middle in it from state 20 on
     assert told[20:].tolist() == [True] * 4
 
@@ -104,8 +106,8 @@ def test_nobody_is_in_the_way_at_the_next_junction_who_was_at_the_last_one(lengt
     other = vehicle(8, places, speed=10, heading=np.pi / 2)
     found = replace(recording(LINK, [ego, other], step_s=0.2), complete=frozenset({"YIELD"}))
     context = context_of(found, route=("1", "2", "9", "10", "11"))
-    enters = np.flatnonzero(values_of(junction_signals(context), "enters_junction"))
-    conflict = values_of(priority_signals(context), "conflict_from_right")
+    enters = np.flatnonzero(values_of(words_of(junction_signals)(context), "enters_junction"))
+    conflict = values_of(words_of(priority_signals)(context), "conflict_from_right")
     assert conflict[enters].tolist() == [True, False]
 
 
@@ -140,8 +142,8 @@ def test_the_next_junction_ends_a_conflict_also_for_who_is_on_none_of_its_ways(c
     context = context_of(found, route=("1", "2", "9", "10", "11"))
     row = [body.id for body in context.surroundings.tracks.participants].index("7")
     assert len(context.surroundings.passages.of_row[row]) == (1 if cuts_corner else 2)
-    enters = np.flatnonzero(values_of(junction_signals(context), "enters_junction"))
-    conflict = values_of(priority_signals(context), "conflict_from_right")
+    enters = np.flatnonzero(values_of(words_of(junction_signals)(context), "enters_junction"))
+    conflict = values_of(words_of(priority_signals)(context), "conflict_from_right")
     assert conflict[enters].tolist() == [True, False]
 
 
@@ -174,7 +176,7 @@ def test_nobody_knows_of_one_before_another_junction_whether_it_turns_into_the_r
     found = replace(
         recording([*signs, way], [ego, other], step_s=0.2), complete=frozenset({"YIELD"})
     )
-    told = priority_signals(context_of(found, route=("14", "15", "16")))
+    told = words_of(priority_signals)(context_of(found, route=("14", "15", "16")))
     side = "conflict_from_left"
     assert (values_of(told, side).any(), unknown_in(told, side).any()) == (not turns, turns)
 
@@ -191,7 +193,7 @@ def test_of_a_long_one_the_front_counts(length, sure, comes_s, conflict):
     other = vehicle(8, places, speed=10, heading=np.pi / 2, length=length)
     north = [lanelet(4, [(0, -150), (0, -4)], successors=(5,)), *NORTH[1:]]
     found = replace(recording([*EAST, *north], [ego, other]), complete=frozenset({"YIELD"}))
-    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    told = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     assert values_of(told, "conflict_from_right").any() == (conflict and sure)
     assert unknown_in(told, "conflict_from_right").any() == (conflict and not sure)
 
@@ -202,7 +204,7 @@ def test_who_is_in_a_junction_when_a_recording_begins(first_y, told):
     ego = vehicle(7, {k: (-2 + 5 * k, 0) for k in range(8)}, speed=10)
     other = vehicle(8, {k: (0, first_y + 5 * k) for k in range(8)}, speed=10, heading=np.pi / 2)
     found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
-    words = priority_signals(context_of(found, route=("1", "2", "3")))
+    words = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     side = "conflict_from_right"
     assert (
         "?" if unknown_in(words, side).any() else "FT"[int(values_of(words, side).any())]
@@ -243,7 +245,7 @@ def test_a_conflict_is_one_of_a_single_junction():
     places = {k: (30, -3 + 10 * (k / 2 - 6)) for k in STEPS}
     other = vehicle(8, places, speed=10, heading=np.pi / 2)
     found = replace(recording([*road, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
-    signals = priority_signals(context_of(found, route=("1", "2", "3", "10", "11")))
+    signals = words_of(priority_signals)(context_of(found, route=("1", "2", "3", "10", "11")))
     from_right = values_of(signals, "conflict_from_right")
     assert not from_right[:4].any()
     assert from_right[9]
@@ -261,7 +263,7 @@ def test_one_that_stops_for_ego_and_is_not_recorded_further_may_have_been_held_u
     states = {k: (drives if k < 5 else stands).states[k] for k in at}
     other = replace(drives, states=states)
     found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
-    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    told = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     assert not values_of(told, "conflict_from_right").any()
     assert unknown_in(told, "conflict_from_right").any() == perhaps
 
@@ -273,7 +275,7 @@ def test_nobody_knows_whose_way_crosses_that_of_ego_on_no_way(aside_m, x, perhap
     ego = vehicle(7, {k: (-20 + 5 * k, -aside_m) for k in STEPS}, speed=10)
     other = vehicle(8, dict.fromkeys(STEPS, (x, 30)), speed=0)
     found = replace(recording([*road, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
-    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    told = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     assert unknown_in(told, "conflict_from_right").any() == (perhaps and x == 0)
     assert unknown_in(told, "unregulated_junction").any() == perhaps
 
@@ -348,7 +350,7 @@ def turning_into_ego_s_road(driven):
     other = along(8, np.array([(0.0, -90.0), *bend, (120.0, 0.0)]), driven)
     ego = vehicle(7, {k: (-15 + 5 * k, 0) for k in STEPS}, speed=10)
     found = replace(recording(road, [ego, other]), complete=frozenset({"YIELD"}))
-    return priority_signals(context_of(found, route=("1", "2", "3")))
+    return words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
 
 
 @pytest.mark.parametrize(
@@ -383,7 +385,7 @@ def test_one_that_speeds_up_when_ego_has_entered_was_not_held_up(at_1_s, conflic
     ways = np.interp(np.arange(16) / 2, times, places)
     other = vehicle(8, {k: (0, ways[k]) for k in STEPS}, speed=10, heading=np.pi / 2)
     found = replace(recording([*long, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
-    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    signals = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     assert values_of(signals, "conflict_from_right").any() == conflict
 
 
@@ -399,7 +401,7 @@ def test_who_stops_too_far_ahead_lets_one_pass_unless_it_runs_into_it(front, con
     places = {k: (0, -3 + 10 * (k / 2 - 3)) for k in STEPS}
     other = vehicle(8, places, speed=10, heading=np.pi / 2)
     found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
-    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    signals = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     assert values_of(signals, "conflict_from_right").any() == conflict
 
 
@@ -424,7 +426,7 @@ def test_a_sign_does_not_let_go_first_whom_a_sign_stops_too(signs, first, expect
     places = {k: (0, -3 + 10 * (k / 2 - 2.5)) for k in STEPS}
     other = vehicle(8, places, speed=10, heading=np.pi / 2)
     found = replace(recording([*east, *road], [ego, other]), complete=frozenset({"YIELD"}))
-    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    signals = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     side = "conflict_from_right"
     assert values_of(signals, side).any() == (expected == "yes")
     assert unknown_in(signals, side).any() == (expected == "unknown")
@@ -445,7 +447,7 @@ def test_a_road_has_priority_until_all_of_ego_is_out_of_the_junction():
     ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
     found = recording([*east, *NORTH], [ego])
     found = replace(found, complete=frozenset({"YIELD", "PRIORITY"}))
-    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    told = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     assert values_of(told, "on_priority_road").tolist() == [True] * 6 + [False] * 10
 
 
@@ -531,7 +533,7 @@ def test_who_comes_up_while_ego_is_held_up_in_the_junction_may_have_been_far(awa
         states={k: replace(state, speed=moved[k]) for k, state in other.states.items()},
     )
     found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
-    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    told = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     side = "conflict_from_right"
     assert values_of(told, side).any() or unknown_in(told, side).any()
     assert bool((values_of(told, side) & ~unknown_in(told, side)).any()) == known
@@ -544,7 +546,7 @@ def with_a_tram(road, comes_s, way=EAST, heading=np.pi / 2, x=0.0):
     places = {k: (x, sign * (-2 - 15 + 10 * (k / 2 - comes_s))) for k in STEPS}
     tram = vehicle(8, places, "train", length=30.0, speed=10, heading=heading)
     found = replace(recording([*way, *road], [ego, tram]), complete=frozenset({"YIELD"}))
-    return priority_signals(context_of(found, route=("1", "2", "3")))
+    return words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
 
 
 def on_tracks(road, *types):
@@ -614,7 +616,7 @@ def test_trains_at_a_level_crossing(step_s, train_mps, comes_s, conflict):
     places = {k: (0, -42 + train_mps * (t - 8 - comes_s)) for k, t in enumerate(times)}
     train = vehicle(8, places, "train", length=80.0, speed=train_mps, heading=np.pi / 2)
     found = replace(recording(lanes, [ego, train], step_s=step_s), complete=frozenset({"rail"}))
-    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    signals = words_of(priority_signals)(context_of(found, route=("1", "2", "3")))
     entered = round(8 / step_s)
     assert values_of(signals, "conflict_with_rail")[entered] == conflict
     assert not unknown_in(signals, "conflict_with_rail")[: entered + 1].any()

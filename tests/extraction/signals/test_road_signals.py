@@ -8,12 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.road_signals import road_signals
+from rulec.extraction.signals.map import road_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, Weather
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 INSIDE = frozenset({"intersection"})
 XS = (50, 110, 150)
@@ -43,7 +44,7 @@ def told(word, lanes, *, complete=(), xs=XS, weather=None, route=("1", "2", "3")
     sides = (found, "right"), (mirrored_recording(found), "left")
     values = []
     for one, side in sides:
-        signals = road_signals(context_of(one, route, side))
+        signals = words_of(road_signals)(context_of(one, route, side))
         if word not in signals.world:
             values.append(None)
             continue
@@ -151,7 +152,7 @@ def test_in_a_junction_the_road_that_leads_there_counts():
         *inside[3:],
     ]
     ego = vehicle(7, {0: (115, 0), 1: (118, 0)})
-    signals = road_signals(context_of(recording(two, [ego]), ("1", "2", "7", "3")))
+    signals = words_of(road_signals)(context_of(recording(two, [ego]), ("1", "2", "7", "3")))
     assert values_of(signals, "one_way").tolist() == [False, False]
 
 

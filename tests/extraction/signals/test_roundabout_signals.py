@@ -11,16 +11,24 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
-from rulec.extraction.signals.map.junction_signals import junction_signals
-from rulec.extraction.signals.map.priority_signals import priority_signals
-from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
-from rulec.extraction.signals.participants.participant_signals import participant_signals
+from rulec.extraction.signals.conduct import next_lane_signals
+from rulec.extraction.signals.map import (
+    junction_signals,
+    lanes_ahead,
+    priority_signals,
+    roundabout_signals,
+)
+from rulec.extraction.signals.participants import (
+    following_signals,
+    participant_conduct,
+    participant_signals,
+)
 from rulec.extraction.tracks.at_junctions.rings import ring_lanelets
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of, steady, told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import all_said, unknown_in, values_of
+from support.words import words_of
 
 RADIUS_M, STEP_S = 15.0, 0.25
 ARMS = (180, 270, 0, 90)
@@ -235,7 +243,7 @@ def both_sides(signals_of, found):
 
 @pytest.mark.parametrize("style", ["none", "arms", "all"])
 def test_where_ego_enters_it_and_is_on_it(style):
-    found = both_sides(roundabout_signals, seen(style))
+    found = both_sides(words_of(roundabout_signals), seen(style))
     (entered,) = np.flatnonzero(values_of(found, "enters_roundabout"))
     inside = np.flatnonzero(values_of(found, "roundabout"))
     # With a junction at the arm ego's front is there at 2.7 s; else on the ring at about 5.5 s
@@ -249,7 +257,7 @@ def test_one_turns_where_one_leaves_it():
     """Onto it and along it the road bends, which is no turn that anybody signals."""
     way = 42 + 9 * TIMES
     context = context_of(seen("arms", ego=way), ROUTE)
-    turn = values_of(junction_signals(context, frozenset({"turn"})), "turn")
+    turn = values_of(words_of(junction_signals)(context, frozenset({"turn"})), "turn")
     # The ring begins 60 m and the entry along; ego is on it from 200° to 340°
     leaves = 60 + np.hypot(*np.diff(ENTRY, axis=0).T).sum() + np.radians(140) * RADIUS_M
     turns = turn != "straight_on"
@@ -259,18 +267,18 @@ def test_one_turns_where_one_leaves_it():
 
 
 def test_a_drive_that_begins_on_it_does_not_enter_it():
-    found = both_sides(roundabout_signals, seen("arms", ego=EGO[30:]))
+    found = both_sides(words_of(roundabout_signals), seen("arms", ego=EGO[30:]))
     assert not values_of(found, "enters_roundabout").any()
     assert values_of(found, "roundabout").all()
 
 
 def test_signs_before_the_ring():
-    signed = roundabout_signals(context_of(seen("arms", signs=("YIELD",)), ROUTE))
+    signed = words_of(roundabout_signals)(context_of(seen("arms", signs=("YIELD",)), ROUTE))
     assert values_of(signed, "roundabout_signed").any()
-    bare = roundabout_signals(context_of(seen("arms"), ROUTE))
+    bare = words_of(roundabout_signals)(context_of(seen("arms"), ROUTE))
     assert not values_of(bare, "roundabout_signed").any()
     assert unknown_in(bare, "roundabout_signed").any()
-    net = roundabout_signals(context_of(seen("arms", complete=["YIELD"]), ROUTE))
+    net = words_of(roundabout_signals)(context_of(seen("arms", complete=["YIELD"]), ROUTE))
     assert not (values_of(net, "roundabout_signed") | unknown_in(net, "roundabout_signed")).any()
 
 
@@ -285,7 +293,9 @@ def test_signs_before_the_ring():
 )
 def test_who_has_to_give_way_need_not_see_the_sign_of_the_ring(signs, complete, told):
     """SUMO's nets say who gives way, and never by which signs."""
-    found = roundabout_signals(context_of(seen("arms", signs=signs, complete=complete), ROUTE))
+    found = words_of(roundabout_signals)(
+        context_of(seen("arms", signs=signs, complete=complete), ROUTE)
+    )
     holds, unknown = (
         values_of(found, "compulsory_roundabout"),
         unknown_in(found, "compulsory_roundabout"),
@@ -307,9 +317,9 @@ def circling(at_entry_s, mps=6.0):
 )
 def test_who_comes_around(style, at_s, conflict):
     # Ego's front gets to the ring at about 6 s, its rear leaves the place at about 7.5 s
-    found = both_sides(priority_signals, seen(style, circling(at_s)))
+    found = both_sides(words_of(priority_signals), seen(style, circling(at_s)))
     (entered,) = np.flatnonzero(
-        values_of(roundabout_signals(context_of(seen(style), ROUTE)), "enters_roundabout")
+        values_of(words_of(roundabout_signals)(context_of(seen(style), ROUTE)), "enters_roundabout")
     )
     assert bool(values_of(found, "conflict_on_roundabout")[entered]) == conflict
     assert not unknown_in(found, "conflict_on_roundabout")[entered]
@@ -354,7 +364,7 @@ def test_who_comes_around_a_small_ring_comes_from_its_side_whatever_the_angle(an
         context_of(found, ("1", "2", "3")),
         context_of(mirrored_recording(found), ("1", "2", "3"), "left"),
     )
-    right, left = (all_said(priority_signals(context)) for context in contexts)
+    right, left = (all_said(words_of(priority_signals)(context)) for context in contexts)
     # Ego drives in at 5 s and leaves the place where the ways join at 7.5 s
     entered = round(5.5 / STEP_S)
     assert right["conflict_on_roundabout"][entered]
@@ -367,14 +377,18 @@ def test_who_comes_around_a_small_ring_comes_from_its_side_whatever_the_angle(an
 
 @pytest.mark.parametrize("angle", [-150, -90])
 def test_who_is_at_the_ring_on_no_way_of_the_map_may_come_around(angle):
-    signals = priority_signals(context_of(small_ring(angle, on_map=False), ("1", "2", "3")))
+    signals = words_of(priority_signals)(
+        context_of(small_ring(angle, on_map=False), ("1", "2", "3"))
+    )
     assert unknown_in(signals, "conflict_on_roundabout")[round(5.5 / STEP_S)]
 
 
 def test_without_a_junction_on_the_map_nobody_knows():
-    found = both_sides(priority_signals, seen("none", circling(7.3)))
+    found = both_sides(words_of(priority_signals), seen("none", circling(7.3)))
     (entered,) = np.flatnonzero(
-        values_of(roundabout_signals(context_of(seen("none"), ROUTE)), "enters_roundabout")
+        values_of(
+            words_of(roundabout_signals)(context_of(seen("none"), ROUTE)), "enters_roundabout"
+        )
     )
     assert not values_of(found, "conflict_on_roundabout").any()
     assert unknown_in(found, "conflict_on_roundabout")[entered]
@@ -383,10 +397,12 @@ def test_without_a_junction_on_the_map_nobody_knows():
 def test_a_straight_road_has_nothing_of_it():
     road = [straight(1, 0, 200)]
     found = recording(road, [vehicle(7, {0: (10, 0), 1: (20, 0)})])
-    signals = roundabout_signals(context_of(found))
+    signals = words_of(roundabout_signals)(context_of(found))
     for name in ("roundabout", "enters_roundabout", "roundabout_signed", "compulsory_roundabout"):
         assert not values_of(signals, name).any()
-    assert not unknown_in(priority_signals(context_of(found)), "conflict_on_roundabout").any()
+    assert not unknown_in(
+        words_of(priority_signals)(context_of(found)), "conflict_on_roundabout"
+    ).any()
 
 
 @pytest.mark.parametrize(("own", "unknown"), [(False, True), (True, False)])
@@ -408,7 +424,9 @@ def test_before_a_ring_drivers_choose_lanes_by_where_they_leave_it(own, unknown)
     other = vehicle(8, dict.fromkeys(range(len(TIMES)), (-60.0, -4.0 if own else 0.0)))
     bodies = [along(7, ENTERING, EGO - 30), other]
     found = recording([*road, *second.values()], bodies, step_s=STEP_S)
-    signals = participant_signals(context_of(found, ROUTE))
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(found, ROUTE)
+    )
     assert unknown_in(signals, "leads_elsewhere")[0, 0] == unknown
     assert not values_of(signals, "leads_elsewhere")[0, 0]
 
@@ -428,5 +446,5 @@ def test_before_a_ring_drivers_sort_themselves_by_lanes(metres_away, free):
     start = -30 - metres_away
     bodies = [steady(7, start, 0), steady(9, start - 90, 0)]
     lanes = recording((near, *beside, *others, *far), bodies, step_s=0.5)
-    told = told_on_both_sides(next_lane_signals, lanes, ("a", "b", "d"))
+    told = told_on_both_sides(words_of(next_lane_signals), lanes, ("a", "b", "d"))
     assert told["near_lane_is_free"][0] == free

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.conduct.lane_changes.lane_change_signals import lane_change_signals
-from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
+from rulec.extraction.signals.conduct import manoeuvre_signals
+from rulec.extraction.signals.conduct.lane_changes import indicator_signals, lane_change_signals
 from support.builders.drive_contexts import told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.words import words_of
 
 STEP_S, STEPS, CHANGE = 0.1, 60, 35
 BEGINS, ENDS = 20, 50
@@ -55,7 +56,9 @@ def told(*others, road=None, route=("1",), mps=20.0, **more):
     # At 1.33 m/s it is 0.3 m beyond the mark at 2 m after 1.73 s, and there all of the next state
     ego = driving(7, 100, across(BEGINS, ENDS, 0.0, 4.0), steady_speed(mps))
     found = recording(road or lanes(3), [ego, *others], step_s=STEP_S)
-    words = told_on_both_sides(lane_change_signals, found, route, **more)
+    words = told_on_both_sides(
+        words_of(lane_change_signals, indicator_signals), found, route, **more
+    )
     changes = np.flatnonzero(np.array(words["lane_change"]) == "True")
     assert len(changes) == 1
     assert abs(int(changes[0]) - 38) <= 1
@@ -184,13 +187,13 @@ def test_who_comes_onto_the_road_looks_for_those_on_it(mps, clear):
     at_3 = 100 + float(speeds[:30].sum()) * STEP_S
     other = driving(8, at_3 - 18 - mps * 3.0, np.zeros(STEPS), np.full(STEPS, mps))
     found = recording([straight(1, 0, 900)], [ego, other], step_s=STEP_S)
-    words = told_on_both_sides(lane_change_signals, found, ("1",))
+    words = told_on_both_sides(words_of(lane_change_signals, indicator_signals), found, ("1",))
     assert "True" not in words["lane_change"]
     assert ("False" in words["lane_is_clear"]) == (clear == "False")
     if clear == "False":
         # Its middle is on the lane, 2 m from the edge, in state 25
         assert words["lane_is_clear"].index("False") == 25
-        joins = told_on_both_sides(manoeuvre_signals, found, ("1",))["joins_road"]
+        joins = told_on_both_sides(words_of(manoeuvre_signals), found, ("1",))["joins_road"]
         assert joins[25] == "True"
 
 
@@ -242,7 +245,7 @@ def test_who_turns_round_looks_for_those_who_come_towards_it(away_m, mps2, clear
     states = {k: replace(state, speed=float(speeds[k])) for k, state in other.states.items()}
     road = [straight(1, 0, 300), lanelet(2, [(300, 4), (0, 4)])]
     found = recording(road, [ego, replace(other, states=states)], step_s=STEP_S)
-    words = told_on_both_sides(lane_change_signals, found, ("1",))
+    words = told_on_both_sides(words_of(lane_change_signals, indicator_signals), found, ("1",))
     told_words = set(words["lane_is_clear"])
     assert told_words - {"True"} == (set() if clear == "True" else {clear})
 

@@ -8,19 +8,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.junction_signals import junction_signals
-from rulec.extraction.signals.map.line_signals import line_signals
-from rulec.extraction.signals.map.map_signals import map_signals
-from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map import (
+    junction_signals,
+    line_signals,
+    map_signals,
+    priority_signals,
+)
 from rulec.extraction.signals.map.stop_lines import stop_line
-from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.building import build_participant
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import all_said, bounds_of, possible_in, unknown_in, values_of
+from support.words import words_of
 
-at_junctions = SignalPasses.joined((junction_signals, line_signals))
+at_junctions = words_of(junction_signals, line_signals)
 
 INSIDE = frozenset({"intersection"})
 RED = Light(0, (("red", 99),))
@@ -165,10 +167,10 @@ def test_a_drive_that_ends_where_the_line_may_be(xs, unknown):
 def test_signs_hold_up_to_the_drawn_line():
     # By where the front was one state before, so that they hold while it crosses
     signs = ["STOP", "GREEN_ARROW", "NO_TURN_ON_RED"]
-    found = all_said(map_signals(context(road(110.0, signs), 95, 106, 109, 112)))
+    found = all_said(words_of(map_signals)(context(road(110.0, signs), 95, 106, 109, 112)))
     for name in ("stop_sign", "turn_on_red_sign", "no_turn_on_red_sign"):
         assert found[name].tolist() == [True, True, True, False], name
-    near = all_said(map_signals(context(road(95.0, signs), 88, 92, 95, 99)))
+    near = all_said(words_of(map_signals)(context(road(95.0, signs), 88, 92, 95, 99)))
     assert near["turn_on_red_sign"].tolist() == [True, True, True, False]
 
 
@@ -182,7 +184,7 @@ def test_signs_of_who_goes_first_hold_until_ego_drives_in(drawn, signs, name):
     enters = values_of(at_junctions(ego), "enters_junction")
     (state,) = np.flatnonzero(enters)
     assert ego.ego_extents.s_max[0, state] > 100
-    found = values_of(map_signals(ego), name)
+    found = values_of(words_of(map_signals)(ego), name)
     assert found[: state + 1].all()
     assert not found[-1]
 
@@ -197,12 +199,18 @@ def test_a_sign_within_a_junction_does_not_hold_up_to_the_next_one():
         straight(5, 150, 300, predecessors=(4,)),
     ]
     ego = context(lanes, 105, 117, 121, 124, 130, route=("1", "2", "3", "4", "5"))
-    assert values_of(map_signals(ego), "give_way_sign").tolist() == [True, True, True, False, False]
+    assert values_of(words_of(map_signals)(ego), "give_way_sign").tolist() == [
+        True,
+        True,
+        True,
+        False,
+        False,
+    ]
 
 
 def test_signs_do_not_hold_up_to_a_junction_far_behind_their_line():
     lanes = road(75.0, ["YIELD"])
-    found = values_of(map_signals(context(lanes, 60, 72, 76, 90, 102)), "give_way_sign")
+    found = values_of(words_of(map_signals)(context(lanes, 60, 72, 76, 90, 102)), "give_way_sign")
     assert found.tolist() == [True, True, True, False, False]
 
 
@@ -210,10 +218,10 @@ def test_a_sign_of_the_lane_beside_is_not_ego_s():
     lanes = road(None, ["GREEN_ARROW"])
     lanes[0] = replace(lanes[0], left_of="4")
     lanes.append(straight(4, 0, 100, 4, right_of=1))
-    assert values_of(map_signals(context(lanes, 50, 60)), "turn_on_red_sign").all()
-    beside = values_of(map_signals(context(lanes, 50, 60, y=4.0)), "turn_on_red_sign")
+    assert values_of(words_of(map_signals)(context(lanes, 50, 60)), "turn_on_red_sign").all()
+    beside = values_of(words_of(map_signals)(context(lanes, 50, 60, y=4.0)), "turn_on_red_sign")
     assert not beside.any()
-    assert "turn_on_red_sign" not in map_signals(context(road(), 50, 60)).world
+    assert "turn_on_red_sign" not in words_of(map_signals)(context(road(), 50, 60)).world
 
 
 def rails():
@@ -235,14 +243,14 @@ def test_a_train_whose_way_crosses_ego_s(comes_s, conflict):
     places = {k: (110.0, -10 + 10 * (k / 2 - comes_s)) for k in range(24)}
     train = vehicle(9, places, "train", heading=np.pi / 2, length=12)
     found = recording(road(None, (), *rails()), [ego, train])
-    signals = priority_signals(context_of(found, ("1", "2", "3")))
+    signals = words_of(priority_signals)(context_of(found, ("1", "2", "3")))
     assert bool(values_of(signals, "conflict_with_rail").any()) == conflict
     assert not values_of(signals, "conflict_from_right").any()
 
 
 def test_the_way_and_the_time_to_a_line():
     # Fronts at 52, 62, 72, 82, 92 and 102 m, 20 m/s
-    found = line_signals(context(road(95.0, ["STOP"]), 50, 60, 70, 80, 90, 100))
+    found = words_of(line_signals)(context(road(95.0, ["STOP"]), 50, 60, 70, 80, 90, 100))
     way, time = values_of(found, "distance_to_stop_line"), values_of(found, "time_to_stop_line")
     assert way.tolist() == pytest.approx([43, 33, 23, 13, 3, 0], abs=0.05)
     assert time.tolist() == pytest.approx([2.15, 1.65, 1.15, 0.65, 0.15, 0], abs=0.01)
@@ -253,16 +261,18 @@ def test_the_way_and_the_time_to_a_line():
 
 
 def test_one_that_stands_takes_for_ever_to_a_line():
-    found = line_signals(context(road(95.0, ["STOP"]), 90, 90, 90))
+    found = words_of(line_signals)(context(road(95.0, ["STOP"]), 90, 90, 90))
     assert values_of(found, "time_to_stop_line").tolist() == [1000.0] * 3
 
 
 def test_without_lights_and_stop_signs_nobody_knows_of_lines():
-    assert line_signals(context(road(), 50, 60)).world.keys() == {"distance_to_junction"}
+    assert words_of(line_signals)(context(road(), 50, 60)).world.keys() == {"distance_to_junction"}
 
 
 def test_the_way_to_a_junction():
-    found = values_of(line_signals(context(road(), 50, 96, 99, 118, 125)), "distance_to_junction")
+    found = values_of(
+        words_of(line_signals)(context(road(), 50, 96, 99, 118, 125)), "distance_to_junction"
+    )
     assert found.tolist() == pytest.approx([48, 2, 0, 0, 1000], abs=0.05)
 
 
@@ -287,7 +297,7 @@ def test_where_all_have_to_stop(own, other, comes_from, all_stop, unknown):
     found = at_junctions(context(lanes, 80, 90, 102))
     assert values_of(found, "all_way_stop").tolist() == [all_stop] * 3
     assert unknown_in(found, "all_way_stop").tolist() == [unknown] * 3
-    assert values_of(map_signals(context(lanes, 80, 90, 99)), "stop_sign").all()
+    assert values_of(words_of(map_signals)(context(lanes, 80, 90, 99)), "stop_sign").all()
 
 
 @pytest.mark.parametrize(
@@ -330,7 +340,7 @@ def test_who_stops_in_a_junction_may_have_crossed_a_line_that_is_not_drawn(place
     lanes[0] = replace(lanes[0], lights=(RED,))
     t = np.arange(len(places)) * 0.5
     ego = build_participant("7", "car", t, places, 0 * t, step_s=0.5)
-    found = line_signals(context_of(recording(lanes, [ego]), ("1", "2", "3")))
+    found = words_of(line_signals)(context_of(recording(lanes, [ego]), ("1", "2", "3")))
     crosses, unknown = (of(found, "crosses_light_line") for of in (values_of, unknown_in))
     told = zip(crosses.tolist(), unknown.tolist(), strict=True)
     assert "".join("?" if dark else "FT"[crossed] for crossed, dark in told) == known
@@ -353,24 +363,24 @@ def first_known(signals, ego, name):
 def test_where_a_drive_begins_ego_may_just_have_crossed_a_line(front, moves, known):
     xs = [front - 2 + moves * k for k in range(8)]
     lit = [replace(one, lights=(RED,) if one.id == "1" else ()) for one in road(100.0)]
-    crossed = first_known(line_signals, context(lit, *xs), "crosses_light_line")
+    crossed = first_known(words_of(line_signals), context(lit, *xs), "crosses_light_line")
     signed = context(road(99.9, ["STOP"]), *xs)
-    assert crossed == first_known(junction_signals, signed, "crosses_stop_line") == known
-    assert first_known(junction_signals, signed, "enters_junction") == known
+    assert crossed == first_known(words_of(junction_signals), signed, "crosses_stop_line") == known
+    assert first_known(words_of(junction_signals), signed, "enters_junction") == known
 
 
 @pytest.mark.parametrize(("front", "known"), [(100.4, False), (103.0, True)])
 def test_a_sign_whose_line_ego_may_just_have_crossed_may_hold(front, known):
     ego = context(road(99.9, ["STOP"]), *[front - 2 + k for k in range(8)])
-    assert first_known(map_signals, ego, "stop_sign") == known
-    assert not values_of(map_signals(ego), "stop_sign").any()
+    assert first_known(words_of(map_signals), ego, "stop_sign") == known
+    assert not values_of(words_of(map_signals)(ego), "stop_sign").any()
 
 
 @pytest.mark.parametrize(("resumes", "known"), [(None, True), (8, False)])
 def test_after_a_hole_ego_may_have_crossed_a_line_in_it(resumes, known):
     body = replace(vehicle(7, {k: (88.0 + k, 0.0) for k in range(13, 18)}), resumes=resumes)
     ego = context_of(recording(road(99.9, ["STOP"]), [body]), ("1", "2", "3"))
-    assert first_known(junction_signals, ego, "crosses_stop_line") == known
+    assert first_known(words_of(junction_signals), ego, "crosses_stop_line") == known
 
 
 def test_the_light_of_a_line_is_what_it_showed_while_ego_was_not_seen():
@@ -380,6 +390,6 @@ def test_the_light_of_a_line_is_what_it_showed_while_ego_was_not_seen():
     other = vehicle(8, dict.fromkeys(range(18), (10.0, 0.0)))
     for resumes, light in ((12, "green_light"), (9, "")):
         body = replace(vehicle(7, places), resumes=resumes)
-        found = line_signals(context_of(recording(lit, [body, other]), ("1", "2", "3")))
+        found = words_of(line_signals)(context_of(recording(lit, [body, other]), ("1", "2", "3")))
         assert unknown_in(found, "crosses_light_line").tolist() == [True] + [False] * 4
         assert values_of(found, "light")[0] == light

@@ -9,11 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map import priority_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 STEPS_S = pytest.mark.parametrize("step_s", [0.04, 0.1, 0.25, 0.5])
@@ -42,8 +43,10 @@ def told(ego, other, step_s=0.1, sign=None, words=("conflict_from_right",)):
     bodies = [along(7, EAST, driven(*ego, step_s)), along(8, NORTH, driven(*other, step_s))]
     found = replace(recording(roads, bodies, step_s=step_s), complete=frozenset({"YIELD", "STOP"}))
     mirrored = [word.replace("right", "left") for word in words]
-    right = priority_signals(context_of(found, ("1", "2", "3")))
-    left = priority_signals(context_of(mirrored_recording(found), ("1", "2", "3"), "left"))
+    right = words_of(priority_signals)(context_of(found, ("1", "2", "3")))
+    left = words_of(priority_signals)(
+        context_of(mirrored_recording(found), ("1", "2", "3"), "left")
+    )
     for word, other_word in zip(words, mirrored, strict=True):
         assert values_of(right, word).tolist() == values_of(left, other_word).tolist()
         assert unknown_in(right, word).tolist() == unknown_in(left, other_word).tolist()

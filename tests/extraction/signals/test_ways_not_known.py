@@ -8,17 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.junction_signals import junction_signals
-from rulec.extraction.signals.map.line_signals import line_signals
+from rulec.extraction.signals.map import junction_signals, line_signals
 from rulec.extraction.signals.relations import ahead_in_lane, measured_ahead
-from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import unknown_in, values_of
+from support.words import words_of
 
-at_junctions = SignalPasses.joined((junction_signals, line_signals))
+at_junctions = words_of(junction_signals, line_signals)
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 

@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import pytest
 
-from rulec.extraction.signals.map.zone_signals import zone_signals
+from rulec.extraction.signals.map import exit_room, zone_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import said, unknown_in, values_of
+from support.words import words_of
 
 INSIDE = frozenset({"intersection"})
 RED = (Light(0, (("red", 9),)),)
@@ -39,8 +40,10 @@ def going(number, xs, y=0.0, **more):
 def told(lanes, *bodies, complete=(), **more):
     """The signals, which are the same in the mirror."""
     found = replace(recording(lanes, bodies), complete=frozenset(complete), **more)
-    right = zone_signals(context_of(found, ("1", "2", "3")))
-    left = zone_signals(context_of(mirrored_recording(found), ("1", "2", "3"), "left"))
+    right = words_of(zone_signals, exit_room)(context_of(found, ("1", "2", "3")))
+    left = words_of(zone_signals, exit_room)(
+        context_of(mirrored_recording(found), ("1", "2", "3"), "left")
+    )
     for name in right.world:
         assert said(right, name).tolist() == said(left, name).tolist(), name
     return right

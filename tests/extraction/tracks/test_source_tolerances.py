@@ -8,10 +8,15 @@ import numpy as np
 import pytest
 
 from rulec import recordings
-from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
-from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals import ego_signals
+from rulec.extraction.signals.conduct import being_overtaken, overtaking_signals
+from rulec.extraction.signals.map import lanes_ahead
 from rulec.extraction.signals.measured_numbers import speed_bounds
-from rulec.extraction.signals.participants.participant_signals import participant_signals
+from rulec.extraction.signals.participants import (
+    following_signals,
+    participant_conduct,
+    participant_signals,
+)
 from rulec.extraction.tracks.source_tolerances import (
     BY_FORM,
     DRONES,
@@ -28,6 +33,7 @@ from support.builders.recordings import recording, vehicle
 from support.defined_words import defined
 from support.generators.random_recordings import lanes
 from support.signal_arrays import said, unknown_in, values_of
+from support.words import words_of
 
 
 def of_source(name, *bodies, form="CommonRoad scenario", count=2):
@@ -175,7 +181,9 @@ def test_a_gap_as_near_to_the_safe_one_as_the_source_is_good(name, gap_m, known)
     # shrinks by 2.5 m with each of the other's: by 0.3 m/s and 0.3 m, sqrt(1.05² + 0.75² + 0.3²) m,
     # 1.32 m; by 0.1 m/s and 0.05 m, 0.43 m.
     ego, other = steady(7, 0, 0, 20), steady(8, 4 + gap_m, 0, 20)
-    found = participant_signals(context_of(of_source(name, ego, other)))
+    found = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(of_source(name, ego, other))
+    )
     assert unknown_in(found, "safe_gap")[0, 1] == (not known)
 
 
@@ -196,7 +204,7 @@ def test_a_speed_near_a_threshold():
 def test_a_simulated_change_of_lanes_in_one_step_is_no_speed():
     # 45 km/h, and 4 m sideways in the last step: by places alone 58 km/h
     places = {k: (12.5 * 0.5 * k, 0.0) for k in range(7)} | {7: (12.5 * 3.5, 4.0)}
-    found = ego_signals(context_of(of_source("x", vehicle(7, places), form="SUMO data")))
+    found = words_of(ego_signals)(context_of(of_source("x", vehicle(7, places), form="SUMO data")))
     assert values_of(found, "speed") == pytest.approx(np.full(8, 45.0))
 
 
@@ -205,9 +213,11 @@ def test_time_headway_and_speed_are_of_the_same_speed():
     ahead = {k: (10 * np.cos(0.3) * k, 10 * np.sin(0.3) * k - 8) for k in range(4)}
     ego = vehicle(7, {k: (x / 2, y / 2) for k, (x, y) in ahead.items()}, heading=0.3)
     context = context_of(of_source("x", ego, steady(8, 30, 0, 0)))
-    signals = participant_signals(context)
+    signals = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context
+    )
     headway, gap = (values_of(signals, name)[0] for name in ("time_headway", "gap"))
-    speed = values_of(ego_signals(context), "speed")
+    speed = values_of(words_of(ego_signals)(context), "speed")
     assert speed == pytest.approx(np.full(4, 36.0), abs=0.01)
     assert headway == pytest.approx(gap / 10, abs=0.01)
 
@@ -229,7 +239,9 @@ def test_time_headway_and_speed_are_of_the_same_speed():
 )
 def test_who_is_level_to_within_a_tolerance_has_no_station(name, x, station, known):
     bodies = steady(7, 0, 0), steady(8, x, 4)
-    found = participant_signals(context_of(of_source(name, *bodies)))
+    found = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(of_source(name, *bodies))
+    )
     # In the second state: whom ego is beside in the first one it may be passing
     assert said(found, "station")[0, 1] == station
     assert unknown_in(found, "station")[0, 1] == (not known)
@@ -250,7 +262,9 @@ def test_who_is_level_to_within_a_tolerance_has_no_station(name, x, station, kno
 def test_who_passes_has_a_station_all_along(xs, known):
     other = vehicle(8, {k: (10.0 * k + x, 4) for k, x in enumerate(xs)}, speed=10.0)
     ego = vehicle(7, {k: (10.0 * k, 0) for k in range(len(xs))}, speed=10.0)
-    found = participant_signals(context_of(of_source("ZAM", ego, other)))
+    found = words_of(participant_signals, participant_conduct, lanes_ahead, following_signals)(
+        context_of(of_source("ZAM", ego, other))
+    )
     assert tuple(~unknown_in(found, "station")[0]) == known
 
 
@@ -259,6 +273,6 @@ def test_overtaking_that_hangs_on_a_tolerance_is_unknown():
     for mps, known in ((10.45, False), (11.0, True), (10.0, True)):
         ego, other = steady(7, 0, 4, 20), steady(8, 100, 0, mps)
         context = context_of(of_source("ZAM", ego, other), ("2",))
-        found = overtaking_signals(context)
+        found = words_of(overtaking_signals, being_overtaken)(context)
         assert unknown_in(found, "overtaking")[0] == (not known)
         assert values_of(found, "overtaking")[0] == (mps == 10.0)

@@ -10,12 +10,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.junction_signals import junction_signals, turn_at
+from rulec.extraction.signals.map import junction_signals
+from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.tracks.at_junctions.junctions import junctions_of
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.signal_arrays import values_of
+from support.words import words_of
 
 RADIUS = 15.0
 ROUTE = ("1", "2", "3", "4", "5")
@@ -52,7 +54,7 @@ def test_a_turn_of_which_only_the_middle_crosses_another_lane(mirror, turn):
     # By an arc the middle part begins 7.9 m behind the straight lanelet's end and is as long
     assert (start, end) == (pytest.approx(107.9, abs=0.3), pytest.approx(115.7, abs=0.3))
     assert turn_at(context, start, end) == turn
-    assert values_of(junction_signals(context), "turn")[-1] == turn
+    assert values_of(words_of(junction_signals)(context), "turn")[-1] == turn
 
 
 def test_a_way_turns_as_the_road_does():

@@ -11,7 +11,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import about_the_middle, oncoming_side
 from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
 from rulec.extraction.signals.signal_columns import OfObjects
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
@@ -27,6 +27,7 @@ _ALONG = np.cos(np.pi / 4)
 """Cosine of the largest angle to the road at which a pedestrian walks along it, either way."""
 
 
+@word("oncoming_clear")
 def _oncoming_clear(context: DriveContext) -> Truth:
     """Whether oncoming traffic leaves room to overtake, and where that is unknown.
 
@@ -121,6 +122,7 @@ def _beyond_own_lanes(context: DriveContext) -> Flags:
     return beyond
 
 
+@word("obstructed")
 def _obstructed(context: DriveContext) -> Truth:
     """Whether an obstacle in one of ego's lanes leaves no room there, and where that is unknown.
 
@@ -223,6 +225,7 @@ def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
     return near
 
 
+@word("room_on_near_side")
 def _room_on_near_side(context: DriveContext) -> OfObjects:
     """Whether participants leave room for ego between them and the road's near edge."""
     first, end = context.lane_edges
@@ -232,6 +235,7 @@ def _room_on_near_side(context: DriveContext) -> OfObjects:
     return OfObjects(room >= width, context.tracks.of_type("road_user"))
 
 
+@word("needs_access")
 def _needs_access(context: DriveContext) -> Truth:
     """Whether ego turns off within ``access_s``; and where its drive ends too early to know."""
     steps = context.steps_in(context.thresholds.access_s)
@@ -245,14 +249,3 @@ def _needs_access(context: DriveContext) -> Truth:
                 turns[columns] |= (numbers >= passage.first - steps) & (numbers <= passage.last)
     ends = spans.columns + steps >= spans.end
     return Truth(turns, turns | ends)
-
-
-clearance_signals = SignalPasses(
-    {
-        "oncoming_clear": _oncoming_clear,
-        "obstructed": _obstructed,
-        "needs_access": _needs_access,
-        "room_on_near_side": _room_on_near_side,
-    }
-)
-"""The signals of whether ego has room to go on, to overtake, and to pass."""

@@ -26,7 +26,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.track import TrackOutlines
 from rulec.trace.partly_known.partly_known_values import Truth
@@ -47,6 +47,7 @@ _HAIR_M = 0.001
 _PLACES = ("centred", "at_near_edge", "at_far_edge")
 
 
+@word("ego_type")
 def _ego_type(context: DriveContext) -> Measured:
     types, spread = [body.type for body in context.ego.participants], context.spans.spread
     # Some files say no more about a vehicle than that it is one
@@ -54,6 +55,7 @@ def _ego_type(context: DriveContext) -> Measured:
     return Measured(spread([_EGO_TYPES.get(kind, "ego_car") for kind in types]), untold)
 
 
+@word("ego_length")
 def _ego_length(context: DriveContext) -> Floats:
     """Ego's length, of its own rectangle if known: a turning body is longer along the road."""
     outlines = [body.outlines for body in context.ego.participants]
@@ -67,16 +69,19 @@ def _ego_length(context: DriveContext) -> Floats:
     return rounded(context.spans.spread(length))
 
 
+@word("speed")
 def _speed(context: DriveContext) -> Measured:
     speed, _ = own_speed(context)
     return Measured(rounded(speed * KMH_PER_MPS), bounds=speed_bounds(context))
 
 
+@word("acceleration")
 def _acceleration(context: DriveContext) -> Measured:
     gained, wrong = context.ego.acceleration[0], context.ego.acceleration_error[0]
     return Measured(rounded(gained), bounds=rounded_outward(gained - wrong, gained + wrong))
 
 
+@word("lane")
 def _lane(context: DriveContext) -> Measured:
     lane, moves = _from_kerb(context, context.steady_lane), np.zeros(context.states, dtype=bool)
     for other in (context.ego_lane, context.steady_lane_from_beside):
@@ -96,6 +101,7 @@ def _nearer_goes_on(context: DriveContext) -> Flags:
     return found
 
 
+@word("lane_number")
 def _lane_number(context: DriveContext) -> Measured:
     number, other, from_beside = (
         np.clip(_rank(context, lane), 0, len(_NUMBERS) - 1)
@@ -104,6 +110,7 @@ def _lane_number(context: DriveContext) -> Measured:
     return Measured(number, (number != other) | (number != from_beside), texts=_NUMBERS)
 
 
+@word("apart_from_far_lane")
 def _apart_from_far_lane(context: DriveContext) -> Truth:
     apart, other, from_beside = (
         _from_far(context, lane) > 1
@@ -112,6 +119,7 @@ def _apart_from_far_lane(context: DriveContext) -> Truth:
     return Truth.known(apart).unknown_at((apart != other) | (apart != from_beside))
 
 
+@word("lanes")
 def _lane_count(context: DriveContext) -> Measured:
     """The number of lanes, the largest at ego's rear, middle and front.
 
@@ -126,6 +134,7 @@ def _lane_count(context: DriveContext) -> Measured:
     return Measured(numbers, texts=_COUNTS)
 
 
+@word("lane_position")
 def _lane_position(context: DriveContext) -> Measured:
     place = _place_in_lane(context)
     return Measured(place, texts=_PLACES)
@@ -150,6 +159,7 @@ def _from_far(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     return count - 1 - _rank(context, lane)
 
 
+@word("straddling")
 def _straddling(context: DriveContext) -> Truth:
     """Whether ego is in two lanes; unknown where tolerances or the map decide, or ego turns off.
 
@@ -226,20 +236,3 @@ def _place_in_lane(context: DriveContext) -> NDArray[intp]:
     edge = context.thresholds.at_edge_m
     kept = (np.minimum(near, far) < edge) & (np.abs(near - far) > edge)
     return np.where(kept, np.where(near < far, 1, 2), 0)
-
-
-ego_signals = SignalPasses(
-    {
-        "ego_type": _ego_type,
-        "ego_length": _ego_length,
-        "speed": _speed,
-        "acceleration": _acceleration,
-        "lane": _lane,
-        "lane_number": _lane_number,
-        "apart_from_far_lane": _apart_from_far_lane,
-        "lanes": _lane_count,
-        "straddling": _straddling,
-        "lane_position": _lane_position,
-    }
-)
-"""The signals about ego alone."""

@@ -28,7 +28,7 @@ from rulec.extraction.signals.queues import (
     vehicles_around,
 )
 from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.partly_known.partly_known_values import Truth
@@ -41,6 +41,7 @@ _JAM_S = 10.0
 """Traffic that has been slow for less (s) may be so because a vehicle pulls in or turns off."""
 
 
+@word("congested", "CONGESTED", "walking_pace_flow")
 def _slow_traffic(context: DriveContext) -> SignalColumns:
     """Whether traffic is slow as a whole, with no lane flowing, nor all lanes except ego's.
 
@@ -177,11 +178,13 @@ def _is_slow(
     return slow & on_lanes.all(axis=0) & beside
 
 
+@word("dense_all_lanes")
 def _dense_all_lanes(context: DriveContext) -> Truth:
     dense, _, not_told = dense_lines(context)
     return Truth.known(dense).unknown_at(not_told)
 
 
+@word("far_lane_queue")
 def _far_lane_queue(context: DriveContext) -> Truth:
     queues, are_slow = queues_by_lane(context)
     slow = queues & are_slow
@@ -191,6 +194,7 @@ def _far_lane_queue(context: DriveContext) -> Truth:
     return Truth.known(queue).unknown_at(more & ~fewer)
 
 
+@word("own_lane_queue")
 def _own_lane_queue(context: DriveContext) -> Truth:
     """Whether ego's lane is a slow queue; unknown where errors or the definition decide."""
     queues, are_slow = queues_by_lane(context)
@@ -215,14 +219,3 @@ def _beside(context: DriveContext, lanes: Flags) -> Flags:
     lane = np.minimum(np.maximum(lane, 0), len(lanes) - 1)
     beside: Flags = inside & lanes[lane, context.spans.columns]
     return beside
-
-
-flow_signals = SignalPasses(
-    {
-        ("congested", "CONGESTED", "walking_pace_flow"): _slow_traffic,
-        "dense_all_lanes": _dense_all_lanes,
-        "far_lane_queue": _far_lane_queue,
-        "own_lane_queue": _own_lane_queue,
-    }
-)
-"""The signals of traffic as a whole."""

@@ -17,7 +17,7 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import SHOULDER, map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Lanelet, LaneMark, is_lane
 from rulec.scenario.recorded.route import lanelet_area
@@ -71,6 +71,7 @@ def _marked_rows(context: DriveContext) -> MarkedRows:
     return MarkedRows(rows, different.searchsorted(keys))
 
 
+@word("marked_lanes")
 def _marked_lanes(context: DriveContext) -> Truth | None:
     """Whether all lines between ego's lanes are marked."""
     if not map_contents(context).marks:
@@ -84,6 +85,7 @@ def _marked_lanes(context: DriveContext) -> Truth | None:
     return Truth.known(all_marked[marked.number]).unknown_at(~told[marked.number])
 
 
+@word("on_solid_line", "broken_on_own_side", "single_line")
 def _lines_under_ego(context: DriveContext) -> SignalColumns:
     """Whether ego is on a solid line, one broken on the side that it comes from, and a single one.
 
@@ -347,11 +349,3 @@ def _near_a_line(context: DriveContext, margin_m: Floats) -> Flags:
 
 
 _NONE = SignalColumns()
-
-lane_mark_signals = SignalPasses(
-    {
-        "marked_lanes": _marked_lanes,
-        ("on_solid_line", "broken_on_own_side", "single_line"): _lines_under_ego,
-    }
-)
-"""The signals of marks; none at all if the map has none."""

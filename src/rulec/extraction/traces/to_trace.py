@@ -11,33 +11,42 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.presences import presence_cells, presence_names, presence_runs
-from rulec.extraction.signals.clearance_signals import clearance_signals
-from rulec.extraction.signals.conduct.called_signals import called_signals
-from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
-from rulec.extraction.signals.conduct.lane_changes.lane_change_signals import lane_change_signals
-from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals, may_back
-from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
-from rulec.extraction.signals.conduct.oncoming_conflicts import oncoming_conflicts
-from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
-from rulec.extraction.signals.conduct.reason_signals import reason_signals
-from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
+from rulec.extraction.signals import clearance_signals, ego_signals, flow_signals, lane_mark_signals
+from rulec.extraction.signals.conduct import (
+    being_overtaken,
+    called_signals,
+    lamp_signals,
+    manoeuvre_signals,
+    next_lane_signals,
+    oncoming_conflicts,
+    overtaking_signals,
+    reason_signals,
+    turning_conflicts,
+)
+from rulec.extraction.signals.conduct.lane_changes import indicator_signals, lane_change_signals
+from rulec.extraction.signals.conduct.manoeuvre_signals import may_back
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
-from rulec.extraction.signals.ego_signals import ego_signals
-from rulec.extraction.signals.flow_signals import flow_signals
-from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
-from rulec.extraction.signals.map.crossing_signals import crossing_signals
-from rulec.extraction.signals.map.junction_signals import junction_signals
-from rulec.extraction.signals.map.level_crossing_signals import level_crossing_signals
-from rulec.extraction.signals.map.line_signals import line_signals
-from rulec.extraction.signals.map.map_signals import map_signals
-from rulec.extraction.signals.map.merge_signals import merge_signals
-from rulec.extraction.signals.map.priority_signals import priority_signals
-from rulec.extraction.signals.map.road_signals import road_signals
-from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
-from rulec.extraction.signals.map.zone_signals import zone_signals
-from rulec.extraction.signals.participants.following_signals import following_signals, safe_gaps
-from rulec.extraction.signals.participants.intention_signals import intention_signals
-from rulec.extraction.signals.participants.participant_signals import participant_signals
+from rulec.extraction.signals.map import (
+    crossing_signals,
+    exit_room,
+    junction_signals,
+    lanes_ahead,
+    level_crossing_signals,
+    line_signals,
+    map_signals,
+    merge_signals,
+    priority_signals,
+    road_signals,
+    roundabout_signals,
+    zone_signals,
+)
+from rulec.extraction.signals.participants import (
+    following_signals,
+    intention_signals,
+    participant_conduct,
+    participant_signals,
+)
+from rulec.extraction.signals.participants.following_signals import safe_gaps
 from rulec.extraction.signals.settling import agreeing, settled
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
@@ -46,7 +55,7 @@ from rulec.extraction.signals.signal_columns import (
     unknown_in,
     unknown_where_unlike,
 )
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import WordsByModule
 from rulec.extraction.traces.recorded_drive import DecidedBy, Drive, DrivePlaces
 from rulec.extraction.traces.signal_arrays import (
     WrittenPresences,
@@ -70,10 +79,12 @@ from rulec.trace.vocabulary_projection import (
 )
 from rulec.vocabulary import Vocabulary
 
-_SIGNALS = SignalPasses.joined(
+_WORDS = WordsByModule(
     (
         ego_signals,
         participant_signals,
+        participant_conduct,
+        lanes_ahead,
         following_signals,
         map_signals,
         road_signals,
@@ -84,6 +95,7 @@ _SIGNALS = SignalPasses.joined(
         roundabout_signals,
         level_crossing_signals,
         zone_signals,
+        exit_room,
         intention_signals,
         called_signals,
         merge_signals,
@@ -91,7 +103,9 @@ _SIGNALS = SignalPasses.joined(
         next_lane_signals,
         flow_signals,
         overtaking_signals,
+        being_overtaken,
         lane_change_signals,
+        indicator_signals,
         lane_mark_signals,
         manoeuvre_signals,
         lamp_signals,
@@ -100,7 +114,7 @@ _SIGNALS = SignalPasses.joined(
         oncoming_conflicts,
     )
 )
-"""The signal passes, in the order in which traces name their signals."""
+"""All words, in the order in which traces name them."""
 
 
 _WITHOUT_DIRECTION = frozenset(
@@ -156,7 +170,7 @@ def to_traces(
     known = ~np.isnan(context.extents.s_min)
 
     def found(one: DriveContext) -> SignalColumns:
-        every = settled(_SIGNALS(one, read), LEAST_S, context.recording.step_s, spans, known)
+        every = settled(_WORDS(one, read), LEAST_S, context.recording.step_s, spans, known)
         return agreeing(every)
 
     signals = found(context)

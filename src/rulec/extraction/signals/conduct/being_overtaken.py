@@ -23,6 +23,7 @@ from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import dense_lines
 from rulec.extraction.signals.signal_columns import Caused, ids_by_state
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import RAMPS
@@ -39,6 +40,7 @@ _CRAWLS_MPS = 5.5
 """A vehicle this slow that gains speed sets off, although it has not quite stood."""
 
 
+@word("being_overtaken")
 def being_overtaken(context: DriveContext) -> Caused:
     """Whether a vehicle overtakes ego, and which one.
 

@@ -14,7 +14,7 @@ from rulec.array_types import Flags
 from rulec.extraction.computed_once import once
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
+from rulec.extraction.signals.conduct.lamp_signals import ego_on_call
 from rulec.extraction.signals.conduct.others_lamps import (
     flashing,
     lamps_of_all,
@@ -22,16 +22,15 @@ from rulec.extraction.signals.conduct.others_lamps import (
 )
 from rulec.extraction.signals.ego_lanelets import own_lanelets, room_beside
 from rulec.extraction.signals.signal_columns import Caused, ids_by_state
-from rulec.extraction.signals.signal_passes import SignalPasses, about
+from rulec.extraction.signals.words import word, word_of_objects
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.partly_known.partly_known_values import Truth
-
-_OWN = "ego_on_call"
 
 _FACES = -0.5
 """Cosine between the directions of ego's road and of a vehicle that comes the other way on it."""
 
 
+@word("emergency_vehicle_near")
 def _emergency_vehicle_near(context: DriveContext) -> Caused:
     """Whether an emergency vehicle on call is near.
 
@@ -46,7 +45,7 @@ def _emergency_vehicle_near(context: DriveContext) -> Caused:
         others = context.relevant[rows] & _comes_near(context)[rows]
         possible |= np.logical_or.reduce(others & on_call[rows])
     if comes.any():
-        comes &= ~_ego_on_call(context).possible
+        comes &= ~ego_on_call(context).possible
     return Caused(Truth(comes, possible), ids_by_state(near & comes, context.ids))
 
 
@@ -63,6 +62,7 @@ def _surely_near(context: DriveContext) -> Flags:
     return found
 
 
+@word("way_cleared")
 def _way_cleared(context: DriveContext) -> Flags | Truth:
     """Whether ego stands, or is at an edge of its lane.
 
@@ -85,6 +85,7 @@ def _at_edge(context: DriveContext) -> Flags:
     return (np.minimum(right, left) < edge) & (np.abs(right - left) > edge)
 
 
+@word_of_objects("on_call")
 @once
 def _on_call(context: DriveContext) -> Truth:
     """Which are emergency vehicles with their blue lights on; unknown of unknown vehicles."""
@@ -96,13 +97,6 @@ def _on_call(context: DriveContext) -> Truth:
     blue, told = lit_lamps(context, "blue_light")
     blue = flashing(blue, context)
     return (called & Truth(blue, blue | ~told)).unknown_at(kinds[:, None])
-
-
-def _ego_on_call(context: DriveContext) -> Truth:
-    """Whether ego is on call, too: which of the two goes first is then unknown."""
-    truth = lamp_signals(context, frozenset({_OWN})).world[_OWN]
-    assert isinstance(truth, Truth)
-    return truth
 
 
 def _comes_near(context: DriveContext) -> Flags:
@@ -190,13 +184,3 @@ def _is_silent(context: DriveContext, rows: NDArray[intp]) -> Flags:
     steps = context.steps_in(context.thresholds.preparing_s)
     silent: Flags = told & ~context.spans.within(horn, steps, around=True)
     return silent
-
-
-called_signals = SignalPasses(
-    {
-        "emergency_vehicle_near": _emergency_vehicle_near,
-        "on_call": about(_on_call),
-        "way_cleared": _way_cleared,
-    }
-)
-"""The signals of emergency vehicles on call."""

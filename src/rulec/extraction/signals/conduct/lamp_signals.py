@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.array_types import Flags
 from rulec.extraction.computed_once import once
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.signal_columns import Measured, SignalColumns
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.recordings.recording import Lamp
 from rulec.trace.partly_known.partly_known_values import Truth
 
@@ -22,6 +21,7 @@ FLASH_S = 1.0
 """Flashing lights count as on if they are lit within this time (s)."""
 
 
+@word("headlamps")
 def _headlamps(context: DriveContext) -> Measured | None:
     """The brightest of ego's lamps; without a beam there may be weaker ones, unless it is night.
 
@@ -36,6 +36,7 @@ def _headlamps(context: DriveContext) -> Measured | None:
     return Measured(np.array(codes, dtype=int), np.array(dark, dtype=bool), texts=_HEADLAMPS)
 
 
+@word("front_fog_lamps", "rear_fog_lamps")
 def _fog_lamps(context: DriveContext) -> SignalColumns:
     egos = context.ego.participants
     told = [
@@ -49,13 +50,15 @@ def _fog_lamps(context: DriveContext) -> SignalColumns:
     return SignalColumns({name: Truth(own, own | untold) for name, own in shown.items()})
 
 
-def _ego_on_call(context: DriveContext) -> Flags | Truth:
+@word("ego_on_call")
+@once
+def ego_on_call(context: DriveContext) -> Truth:
     """Ego's blue lights; unknown only for emergency vehicles whose lights are not recorded."""
     egos, spread = context.ego.participants, context.spans.spread
     may_be = spread([ego.type == "priorityVehicle" for ego in egos])
     shows = spread(["blue_light" in ego.shows for ego in egos])
     if not (may_be | shows).any():
-        return may_be
+        return Truth.known(may_be)
     lit = ego_lamps(context)
     blue = np.array(["blue_light" in (lamps or ()) for lamps in lit], dtype=bool)
     recorded = shows & np.array([lamps is not None for lamps in lit], dtype=bool)
@@ -73,13 +76,3 @@ def ego_lamps(context: DriveContext) -> list[frozenset[Lamp] | None]:
         for ego, columns in drives
         for lamps in map(ego.lamps.get, context.steps[columns].tolist())
     ]
-
-
-lamp_signals = SignalPasses(
-    {
-        "headlamps": _headlamps,
-        "ego_on_call": _ego_on_call,
-        ("front_fog_lamps", "rear_fog_lamps"): _fog_lamps,
-    }
-)
-"""The signals of ego's lamps."""

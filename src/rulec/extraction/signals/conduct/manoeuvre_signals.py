@@ -10,7 +10,7 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.u_turns import swings_round, u_turns
 from rulec.extraction.signals.ego_lanelets import beyond_edges, own_lanelets
 from rulec.extraction.signals.signal_columns import Measured
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.surroundings import BACKS_MPS
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
@@ -30,6 +30,7 @@ _DRIFT_M = 3.0
 """Boxes of standing vehicles drift by less: up to 2.5 m to and fro in Argoverse 2."""
 
 
+@word("reversing")
 def _reversing(context: DriveContext) -> Truth:
     """Whether ego moves against its heading.
 
@@ -142,6 +143,7 @@ def may_back(context: DriveContext) -> Flags:
     return found | spans.all(found | ~moves) & spans.any(found)
 
 
+@word("driving_side")
 def _driving_side(context: DriveContext) -> Measured:
     if context.wrong_way:
         return Measured(np.full(context.states, _SIDES.index("wrong_way")), texts=_SIDES)
@@ -263,10 +265,12 @@ def _on_map(context: DriveContext) -> Flags:
     return on_map
 
 
+@word("u_turn")
 def _u_turn(context: DriveContext) -> Truth:
     return u_turns(context)
 
 
+@word("joins_road")
 def _joins_road(context: DriveContext) -> Truth:
     """Whether ego drives onto the road from where it stood beside it.
 
@@ -296,14 +300,3 @@ def _joins_road(context: DriveContext) -> Truth:
         swings = swings_round(context) | u_turns(context).unknown
         truth = truth.unknown_at(joins & context.spans.within(swings, reach, around=True))
     return truth
-
-
-manoeuvre_signals = SignalPasses(
-    {
-        "reversing": _reversing,
-        "driving_side": _driving_side,
-        "u_turn": _u_turn,
-        "joins_road": _joins_road,
-    }
-)
-"""The signals of ego's manoeuvres."""

@@ -20,7 +20,7 @@ from rulec.extraction.signals.ego_lanelets import CYCLE_LANE, SHOULDER, own_lane
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import RAMPS, Lanelet, LaneMark, Side
 from rulec.trace.cells import Cells
@@ -61,6 +61,7 @@ _STANDING_CAMERAS = frozenset(
 """Formats of data recorded from above a stretch of road, or invented for one."""
 
 
+@word("near_lane_is_free")
 def _on_near_lane(context: DriveContext) -> Truth:
     free, within_error = _near_lane_is_free(context)
     doubtful = _goes_back(context)
@@ -81,6 +82,7 @@ def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]
     return lane, inside & travel_lanes(context)[np.arange(context.states), lane]
 
 
+@word("other_lane_available")
 def _far_lane_is_free(context: DriveContext) -> Flags:
     """Whether nobody is in the place beside ego on the next far lane, now or soon."""
     lane, there = _next_lane(context, "left" if context.side == "right" else "right")
@@ -371,12 +373,3 @@ def _on_lane(
     chosen[states] = True
     cells = Cells.at(context.in_lane(lane) & context.going_along & chosen)
     return cells.rows, cells.columns
-
-
-next_lane_signals = SignalPasses(
-    {
-        "other_lane_available": _far_lane_is_free,
-        "near_lane_is_free": _on_near_lane,
-    }
-)
-"""The signals of whether a lane next to ego's is free for it."""

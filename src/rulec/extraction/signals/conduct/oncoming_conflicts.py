@@ -23,7 +23,7 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
     two_way,
 )
 from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.signal_passes import SignalPasses, about
+from rulec.extraction.signals.words import word_of_objects
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.partly_known.partly_known_values import Truth
 
@@ -52,6 +52,7 @@ class _Stay(NamedTuple):
     sure: bool
 
 
+@word_of_objects("holds_up_oncoming")
 def _holds_up_oncoming(context: DriveContext) -> Truth:
     held, seems_so = np.zeros((2, *context.relevant.shape), dtype=bool)
     far = sides_beyond_far_edge(context, context.ego_extents)[1][0]
@@ -197,7 +198,3 @@ def _is_passed(context: DriveContext, row: int, states: slice) -> bool:
     """Whether a vehicle gets past ego in the end, so that it did not brake to turn off before."""
     others, own = context.extents, context.ego_extents
     return bool((others.s_min[row, states] < own.s_max[0, states]).any())
-
-
-oncoming_conflicts = SignalPasses({"holds_up_oncoming": about(_holds_up_oncoming)})
-"""The signal of conflicts with oncoming vehicles while ego is beyond the middle."""

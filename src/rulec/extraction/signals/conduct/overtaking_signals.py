@@ -7,7 +7,6 @@ import numpy as np
 from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.conduct.being_overtaken import being_overtaken
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     on_both_halves,
     oncoming_side,
@@ -18,7 +17,7 @@ from rulec.extraction.signals.ego_lanelets import (
     those_on_lanes,
 )
 from rulec.extraction.signals.settling import fewest_states, without_blips
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.trace.cells import Cells
 from rulec.trace.partly_known.partly_known_values import Truth
@@ -27,6 +26,7 @@ _DRIFT_MPS = 0.2
 """A vehicle with a lower lateral speed keeps its lane."""
 
 
+@word("overtaking")
 def _overtaking(context: DriveContext) -> Truth:
     """Whether ego overtakes; beyond the road's middle, from its way there until it is back.
 
@@ -102,6 +102,7 @@ def _close_behind(context: DriveContext) -> Flags:
     return close
 
 
+@word("begins_to_overtake")
 def _begins_to_overtake(context: DriveContext) -> Truth:
     """Whether ego overtakes within ``parting_s``, so that it is pulling out for that by now.
 
@@ -156,13 +157,3 @@ def _ahead_and_past(context: DriveContext, cells: Cells, tolerances: float) -> F
     reach = np.where(station == relations.BEHIND, far_ahead, far_behind)
     near: Flags = (gap <= reach + tolerances * known.place_m) & (station != relations.BESIDE)
     return near
-
-
-overtaking_signals = SignalPasses(
-    {
-        "overtaking": _overtaking,
-        "begins_to_overtake": _begins_to_overtake,
-        "being_overtaken": being_overtaken,
-    }
-)
-"""The signals of overtaking."""

@@ -36,7 +36,7 @@ from rulec.extraction.signals.conduct.braking_causes.traffic_causes import (
 )
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.map.exit_room import waits_for_room
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
@@ -63,6 +63,7 @@ _DRIVES_KMH = 30.0
 """A vehicle that is this fast later on has not broken down, nor is it towed."""
 
 
+@word("cause_to_brake")
 @once
 def _cause_to_brake(context: DriveContext) -> Truth:
     """Whether there is a reason to brake, stand or be slow.
@@ -251,7 +252,3 @@ def _followed(context: DriveContext) -> Flags:
     cells = Cells.at(behind)
     speed = np.maximum(cells.of(context.extents.along), 0.0)
     return cells.in_columns(cells.of(relations.gap(context)) <= _FOLLOWS_S * speed)
-
-
-reason_signals = SignalPasses({"cause_to_brake": _cause_to_brake})
-"""The signal of reasons to brake."""

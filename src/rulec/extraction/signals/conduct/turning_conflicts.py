@@ -25,7 +25,7 @@ from rulec.extraction.signals.conduct.beside_on_rings import (
 from rulec.extraction.signals.conduct.leaving_rings import crossed_on_ring
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
 from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.recordings.recording import Points
 from rulec.trace.partly_known.partly_known_values import Truth
@@ -35,6 +35,7 @@ _STRAIGHT_RAD = np.radians(30.0)
 _CREEPS_MPS = 0.5
 
 
+@word("turns_in_way_of")
 @drive_by_drive
 def _turns_in_way_of(context: DriveContext) -> SignalColumns:
     met: Flags = np.zeros(context.relevant.shape, dtype=bool)
@@ -174,7 +175,3 @@ def _in_frame(context: DriveContext, turn: _Turn, at: Any) -> tuple[Floats, Floa
     cos, sin = np.cos(turn.heading), np.sin(turn.heading)
     angles = np.angle(np.exp(1j * (tracks.heading[at] - turn.heading)))
     return x * cos + y * sin, y * cos - x * sin, angles
-
-
-turning_conflicts = SignalPasses({"turns_in_way_of": _turns_in_way_of})
-"""The signal of conflicts with participants beside a turning ego."""

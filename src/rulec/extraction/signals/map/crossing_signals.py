@@ -27,7 +27,7 @@ from rulec.extraction.signals.map.zone_signals import (
     side_road,
 )
 from rulec.extraction.signals.signal_columns import Measured, OfObjects
-from rulec.extraction.signals.signal_passes import SignalPasses, about
+from rulec.extraction.signals.words import word, word_of_objects
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
@@ -51,6 +51,7 @@ _WALKS_MPS = 1.4
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
 
+@word("crossing_use")
 def _crossing_use(context: DriveContext) -> OfObjects | None:
     if not crossings_told(context):
         return None
@@ -77,6 +78,7 @@ def _in_doubt(context: DriveContext, uses: NDArray[intp]) -> Flags:
     return context.spans.within(changes, steps, around=True)
 
 
+@word("stopped_for_pedestrian")
 def _stopped_for_pedestrian(context: DriveContext) -> OfObjects | None:
     if not crossings_told(context):
         return None
@@ -102,6 +104,7 @@ def _is_lit(context: DriveContext) -> Flags:
     return lit
 
 
+@word_of_objects("nearest_to_crossing")
 def _nearest_to_crossing(context: DriveContext) -> Truth | None:
     if not crossings_told(context):
         return None
@@ -116,6 +119,7 @@ def _nearest_to_crossing(context: DriveContext) -> Truth | None:
     return Truth.known(near).unknown_at(unsure)
 
 
+@word("crosses_side_road")
 def _crosses_side_road(context: DriveContext) -> OfObjects:
     """Pedestrians that use the road into which ego turns without being let across by ego.
 
@@ -406,14 +410,3 @@ def _stopped(context: DriveContext, states: NDArray[intp]) -> Flags:
     stopped: Flags = stands & context.on_lanes[:, states]
     stopped &= (way >= 0) & (way <= 2 * context.thresholds.zone_m)
     return stopped
-
-
-crossing_signals = SignalPasses(
-    {
-        "crossing_use": _crossing_use,
-        "stopped_for_pedestrian": _stopped_for_pedestrian,
-        "nearest_to_crossing": about(_nearest_to_crossing),
-        "crosses_side_road": _crosses_side_road,
-    }
-)
-"""The signals of pedestrians, and of vehicles that stop for them."""

@@ -13,6 +13,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.map.level_crossing_signals import level_crossings
 from rulec.extraction.signals.measured_numbers import corner_ahead
 from rulec.extraction.signals.signal_columns import Caused, ids_by_state
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.driven_road import Stretches
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.partly_known.partly_known_values import Truth
@@ -24,6 +25,7 @@ _AT_PLACE_M = 10.0
 """Ego waits before a place if its front is at most this far (m) from it."""
 
 
+@word("exit_clear")
 def exit_clear(context: DriveContext) -> Caused:
     """Whether ego has room behind the place that it enters; and where that is unknown.
 

@@ -27,7 +27,7 @@ from rulec.extraction.signals.map.stop_lines import (
 )
 from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import Measured, SignalColumns, world_signals
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.driven_road import Stretches, reach_into
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON
@@ -43,6 +43,7 @@ _SWEEPS_M = 10.0
 """The middle of a longer body cuts the corner in a turn."""
 
 
+@word("junction_zone")
 def _junction_zone(context: DriveContext) -> Flags:
     return _at_junctions(context, context.road.junctions)
 
@@ -53,6 +54,7 @@ def _at_junctions(context: DriveContext, junctions: Stretches) -> Flags:
     return reach_into(junctions, own.s_min[0], own.s_max[0], context.thresholds.zone_m)
 
 
+@word("enters_junction")
 def _enters_junction(context: DriveContext) -> Truth:
     enters, unseen = np.zeros((2, context.states), dtype=bool)
     for start, _ in context.road.junctions:
@@ -61,6 +63,7 @@ def _enters_junction(context: DriveContext) -> Truth:
     return Truth.known(enters).unknown_at(unseen)
 
 
+@word("turn", "preparing_to_leave")
 def _turns(context: DriveContext) -> SignalColumns:
     turn = np.full(context.states, "straight_on", dtype="<U11")
     bends = np.zeros(context.states, dtype=bool)
@@ -79,6 +82,7 @@ def _turns(context: DriveContext) -> SignalColumns:
     return world_signals(turn=Measured(turn, not_told), preparing_to_leave=preparing)
 
 
+@word("all_way_stop")
 @drive_by_drive
 def _all_way_stop(context: DriveContext) -> SignalColumns:
     """Whether all roads to the junction that ego nears or is in have stop signs."""
@@ -209,6 +213,7 @@ def _time_driven(context: DriveContext, pace_kmh: float) -> Floats:
     return driven
 
 
+@word("crosses_stop_line")
 def _crosses_stop_line(context: DriveContext) -> Truth | None:
     """Whether ego crosses the line of a lanelet with a stop sign; unknown where it perhaps does.
 
@@ -258,15 +263,3 @@ def turn_at(context: DriveContext, start: float, end: float) -> str:
     if abs(turned) >= 180.0 - context.thresholds.turned_deg:
         return "turn_round"
     return "turn_near" if (turned < 0) == (context.side == "right") else "turn_far"
-
-
-junction_signals = SignalPasses(
-    {
-        "junction_zone": _junction_zone,
-        "enters_junction": _enters_junction,
-        ("turn", "preparing_to_leave"): _turns,
-        "crosses_stop_line": _crosses_stop_line,
-        "all_way_stop": _all_way_stop,
-    }
-)
-"""The signals of junctions on ego's road, and of their signs."""

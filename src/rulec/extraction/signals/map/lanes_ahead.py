@@ -15,6 +15,7 @@ from rulec.extraction.computed_once import once_a_recording, once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
+from rulec.extraction.signals.words import word_of_objects
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.at_junctions.junctions import JunctionWay
 from rulec.recordings.recording import Lanelet
@@ -122,6 +123,7 @@ def _lead(context: DriveContext, ways: Sequence[JunctionWay], turned: float) -> 
     return Leads.BOTH if any(along) else Leads.ELSEWHERE
 
 
+@word_of_objects("leads_elsewhere")
 def leads_elsewhere(context: DriveContext) -> Truth:
     """Whether a participant's lane before a junction does not go on along ego's road beyond it.
 

@@ -12,7 +12,7 @@ from rulec.extraction.computed_once import once_a_map, once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.stop_lines import may_have_passed
 from rulec.extraction.signals.signal_columns import SignalColumns, world_signals
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.driven_road import Stretches, reach_into, runs_along
 from rulec.scenario.recorded.route import lanelet_length
 from rulec.trace.partly_known.partly_known_values import Truth
@@ -21,6 +21,7 @@ _SIGNS_M = 300.0
 """Signs that warn of a level crossing are at most this far before it: beacons begin at 240 m."""
 
 
+@word("level_crossing_zone", "enters_level_crossing", "guarded")
 def _zones(context: DriveContext) -> SignalColumns:
     if not _tells_rails(context):
         return SignalColumns()
@@ -35,6 +36,7 @@ def _zones(context: DriveContext) -> SignalColumns:
     return world_signals(level_crossing_zone=zone, enters_level_crossing=entering, guarded=zone)
 
 
+@word("past_level_crossing_sign")
 def _warned(context: DriveContext) -> Truth | None:
     """Whether ego is past the sign warning of a level crossing; unknown where there may be one.
 
@@ -80,6 +82,7 @@ def _ways_to_next(context: DriveContext) -> Mapping[str, float]:
     return ways
 
 
+@word("tracks_at_kerb")
 def _tracks_at_kerb(context: DriveContext) -> Flags | None:
     """Whether rails are beside the kerb lane, or in it, as rail vehicles there show."""
     if not _tells_rails(context):
@@ -119,13 +122,3 @@ def _pieces_by_rails(context: DriveContext) -> Flags:
         beside = lanelets.get(getattr(outer, near) or "")
         flags.append(beside is not None and "rail" in beside.types)
     return np.array(flags)
-
-
-level_crossing_signals = SignalPasses(
-    {
-        ("level_crossing_zone", "enters_level_crossing", "guarded"): _zones,
-        "past_level_crossing_sign": _warned,
-        "tracks_at_kerb": _tracks_at_kerb,
-    }
-)
-"""The signals of level crossings and rails."""

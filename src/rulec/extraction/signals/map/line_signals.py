@@ -32,7 +32,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
     world_signals,
 )
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.driven_road import DrivenRoad, next_along
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight, Recording
@@ -51,6 +51,7 @@ COLOURS = {
 }
 
 
+@word("distance_to_stop_line", "time_to_stop_line")
 def _to_line(context: DriveContext) -> SignalColumns:
     """The distance to the line, and the time that ego takes to reach it."""
     if not _tells_lines(context):
@@ -99,6 +100,7 @@ def _way_to_line(context: DriveContext) -> tuple[Floats, tuple[Floats, Floats]]:
     return way, (near, far)
 
 
+@word("distance_to_junction")
 def _to_junction(context: DriveContext) -> Measured:
     begin, _ = next_along(context.road.junctions, context.ego_extents.s_min[0])
     way, place = begin - context.ego_extents.s_max[0], context.tolerances.place_m
@@ -106,6 +108,7 @@ def _to_junction(context: DriveContext) -> Measured:
     return Measured(rounded(to), bounds=rounded_outward(bounds[0], bounds[1]))
 
 
+@word("light", "crosses_light_line")
 def _traffic_lights(context: DriveContext) -> SignalColumns:
     # Lights stand only where ways cross: without such a place there are none
     nowhere = not context.surroundings.passages.junctions and not context.road.crossings
@@ -257,13 +260,3 @@ def _colours_of(light: Light | ObservedLight, steps: NDArray[intp]) -> NDArray[n
     phases = ends.searchsorted((steps - light.begin) % ends[-1], "right")
     shows: NDArray[np.str_] = np.array([COLOURS.get(colour, "") for colour in colours])[phases]
     return shows
-
-
-line_signals = SignalPasses(
-    {
-        ("light", "crosses_light_line"): _traffic_lights,
-        ("distance_to_stop_line", "time_to_stop_line"): _to_line,
-        "distance_to_junction": _to_junction,
-    }
-)
-"""The signals of the distance to lines and junctions."""

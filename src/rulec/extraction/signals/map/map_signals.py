@@ -32,7 +32,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.driven_road import next_along
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import (
@@ -82,6 +82,7 @@ _SURFACES = {
 _PLAIN = "carriageway"
 
 
+@word("distance_to_crossing")
 def _distance_to_crossing(context: DriveContext) -> Measured | None:
     if not crossings_told(context):
         return None
@@ -90,6 +91,7 @@ def _distance_to_crossing(context: DriveContext) -> Measured | None:
     return Measured(rounded(distance), bounds=rounded_outward(nearer, farther))
 
 
+@word("crossing_zone")
 def _crossing_zone(context: DriveContext) -> Truth | None:
     if not crossings_told(context):
         return None
@@ -103,6 +105,7 @@ def _crossing_zone(context: DriveContext) -> Truth | None:
     return Truth.known(near).unknown_at(doubtful)
 
 
+@word("limit")
 def _limit(context: DriveContext) -> Measured | None:
     if not map_contents(context).limits:
         return None
@@ -111,6 +114,7 @@ def _limit(context: DriveContext) -> Measured | None:
     )
 
 
+@word("minimum_limit")
 def _minimum_limit(context: DriveContext) -> Measured | None:
     if not map_contents(context).minima:
         return None
@@ -118,6 +122,7 @@ def _minimum_limit(context: DriveContext) -> Measured | None:
     return Measured(rounded(np.array(least) * KMH_PER_MPS), may_hold(context, {LEAST_SPEED_SIGN}))
 
 
+@word(*_SIGNS)
 def _signs(context: DriveContext) -> SignalColumns:
     known = map_contents(context).signs | context.recording.complete
     found: dict[str, Truth] = {}
@@ -199,6 +204,7 @@ def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
     return next_along(context.road.crossings, context.ego_extents.s_min[0])
 
 
+@word("surface")
 def _surface(context: DriveContext) -> Measured:
     """What ego is on: a crossing if any part of it is on one, else the surface at its middle.
 
@@ -354,16 +360,3 @@ def _crossing_areas(context: DriveContext) -> shapely.Geometry:
     """The area of all pedestrian crossings on the map."""
     lanelets = context.recording.lanelets.values()
     return shapely.union_all([lanelet_area(x) for x in lanelets if CROSSWALK in x.types])
-
-
-map_signals = SignalPasses(
-    {
-        "surface": _surface,
-        "distance_to_crossing": _distance_to_crossing,
-        "crossing_zone": _crossing_zone,
-        "limit": _limit,
-        "minimum_limit": _minimum_limit,
-        tuple(_SIGNS): _signs,
-    }
-)
-"""The signals of ego's road, as far as the map contains them."""

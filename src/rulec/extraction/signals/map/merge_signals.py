@@ -20,7 +20,7 @@ from rulec.extraction.computed_once import once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.recordings.recording import RAMPS, Lanelet, Recording
 from rulec.scenario.recorded.route import lanelet_length, turns_back
 from rulec.trace.partly_known.partly_known_values import Truth
@@ -35,6 +35,7 @@ _WAY_M = 30.0
 """Longest way from the lanes before a junction, or an added lane, to those behind."""
 
 
+@word("narrowing", "merged", "abreast_at_narrowing")
 def _narrowings(context: DriveContext) -> SignalColumns:
     reach = context.thresholds.approach_m
     front, lane = context.ego_extents.s_max[0], context.ego_lane
@@ -141,7 +142,3 @@ def _is_one_of_several(recording: Recording, lanelet: Lanelet) -> bool:
 def _tapers(lanelet: Lanelet) -> bool:
     widths = np.hypot(*(lanelet.left[[0, -1]] - lanelet.right[[0, -1]]).T)
     return bool(widths[1] < _TAPERED * widths[0])
-
-
-merge_signals = SignalPasses({("narrowing", "merged", "abreast_at_narrowing"): _narrowings})
-"""The signals of ego's place at narrowings, and of vehicles beside it there."""

@@ -50,7 +50,7 @@ from rulec.extraction.signals.signal_columns import (
     end_to_end,
     nobody,
 )
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.at_junctions.junctions import before_joining
 from rulec.scenario.recorded.reference_line import turn
@@ -79,6 +79,7 @@ def drive_by_drive(
     return found
 
 
+@word(*_CONFLICTS, *ARRIVALS)
 @drive_by_drive
 def _conflicts(context: DriveContext) -> SignalColumns:
     conflicts, unsure, strangers = (
@@ -201,6 +202,7 @@ def _until_out(context: DriveContext, passage: Passage) -> slice:
     return slice(span.start, max(span.stop, min(out, _next(context, passage))))
 
 
+@word(*_ROADS)
 @drive_by_drive
 def _roads(context: DriveContext) -> SignalColumns:
     """What the map says about the junction that ego nears or is in."""
@@ -331,12 +333,3 @@ def _sides(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ..
     if not side or (side == ONCOMING and not gives_way_to(context, own, other)):
         return ()
     return (side, _RING) if came_on & ring else (side,)
-
-
-priority_signals = SignalPasses(
-    {
-        _ROADS: _roads,
-        (*_CONFLICTS, *ARRIVALS): _conflicts,
-    }
-)
-"""The signals of right of way at junctions."""

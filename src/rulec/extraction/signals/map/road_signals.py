@@ -14,7 +14,7 @@ from rulec.extraction.computed_once import once_a_map
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
 from rulec.extraction.signals.signal_columns import Measured, SignalColumns, world_signals
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.surroundings import Directions
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, RAMPS, Lanelet
@@ -36,12 +36,14 @@ _LANE_KINDS = {
 }
 
 
+@word("built_up")
 def _built_up(context: DriveContext) -> Truth | None:
     if not _SETTINGS & map_contents(context).types:
         return None
     return own_lanelets(context).told(_town(context))
 
 
+@word("road_class")
 def _road_class(context: DriveContext) -> Measured | None:
     town, types = _town(context), _types_of_road(context)
     classes = own_lanelets(context).values(lambda at: _class(types(at), town(at)))
@@ -54,6 +56,7 @@ def _where_told(values: list[str]) -> Measured:
     return Measured(column, column == "")
 
 
+@word("one_way", "divided")
 def _ways(context: DriveContext) -> SignalColumns:
     directions, spans = _directions(context), context.spans
     ways = {
@@ -68,6 +71,7 @@ def _ways(context: DriveContext) -> SignalColumns:
     return SignalColumns(told)
 
 
+@word("lane_kind")
 def _lane_kind(context: DriveContext) -> Measured | None:
     """The kind of the lane that ego has changed to last, consistent with `lane_change`.
 
@@ -94,12 +98,14 @@ def _lane_kind(context: DriveContext) -> Measured | None:
     return _where_told(kinds)
 
 
+@word("tunnel")
 def _tunnel(context: DriveContext) -> Flags | None:
     if "tunnel" not in map_contents(context).types:
         return None
     return own_lanelets(context).flags(lambda at: "tunnel" in at.types)
 
 
+@word("told_to_stop", "told_to_go")
 def _officers(context: DriveContext) -> SignalColumns:
     if "officer" not in context.recording.complete:
         return SignalColumns()
@@ -107,6 +113,7 @@ def _officers(context: DriveContext) -> SignalColumns:
     return world_signals(told_to_stop=nobody, told_to_go=nobody)
 
 
+@word("wet", "icy", "visibility", "raining", "night")
 def _weather(context: DriveContext) -> SignalColumns:
     weather = context.recording.weather
     told = {"wet": weather.wet, "icy": weather.icy, "visibility": weather.visibility_m}
@@ -183,17 +190,3 @@ def _has_fast_town(context: DriveContext) -> bool:
         "urban" in x.types and round((x.limit_mps or 0.0) * KMH_PER_MPS, 2) > _URBAN_KMH
         for x in context.recording.lanelets.values()
     )
-
-
-road_signals = SignalPasses(
-    {
-        "built_up": _built_up,
-        "road_class": _road_class,
-        ("one_way", "divided"): _ways,
-        "lane_kind": _lane_kind,
-        "tunnel": _tunnel,
-        ("told_to_stop", "told_to_go"): _officers,
-        ("wet", "icy", "visibility", "raining", "night"): _weather,
-    }
-)
-"""The signals of ego's road, its surroundings and its weather."""

@@ -13,7 +13,7 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.stop_lines import may_have_passed
 from rulec.extraction.signals.signal_columns import SignalColumns, world_signals
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.driven_road import runs_along
 from rulec.trace.partly_known.partly_known_values import Truth
 
@@ -25,6 +25,7 @@ _SIGNS: Mapping[str, frozenset[str]] = {
 """Word -> the signs before a ring that it stands for."""
 
 
+@word("roundabout", "enters_roundabout", *_SIGNS)
 def _rings(context: DriveContext) -> SignalColumns:
     road = context.road
     front, middle = context.ego_extents.s_max[0], context.ego_extents.s[0]
@@ -77,7 +78,3 @@ def roundabouts(context: DriveContext) -> tuple[tuple[float, float, bool], ...]:
         before = [low for low, high in road.junctions if low < start <= high + 1.0]
         found.append((before[0], end, True) if before else (start, end, False))
     return tuple(found)
-
-
-roundabout_signals = SignalPasses({("roundabout", "enters_roundabout", *_SIGNS): _rings})
-"""The signals of roundabouts on ego's road, which are rings of lanelets."""

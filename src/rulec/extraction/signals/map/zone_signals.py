@@ -13,12 +13,11 @@ from rulec.array_types import Flags, Floats
 from rulec.extraction.computed_once import once_a_map, once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.map.exit_room import exit_clear
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import drawn_lines
 from rulec.extraction.signals.signal_columns import Measured
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.extraction.tracks.driven_road import Stretches, reach_into
 from rulec.recordings.recording import Recording, is_lane, is_there
 from rulec.scenario.recorded.lane_coordinates import crossings_along
@@ -31,6 +30,7 @@ _BEFORE_LINE_M = 10.0
 """On maps without stop lines, crossings are up to this far before ends of lanelets with lights."""
 
 
+@word("crossing_kind")
 def _crossing_kind(context: DriveContext) -> Measured:
     """The kind of the crossing ahead: ``directed_crossing`` by a light of its own or ego's.
 
@@ -215,12 +215,3 @@ def _directed_stretches(context: DriveContext, there: bool) -> Stretches:
             begin = place if near else end - _BEFORE_LINE_M
             stretches.append((begin, max([end + _LIGHTS_AT_CROSSING_M, *last])))
     return stretches
-
-
-zone_signals = SignalPasses(
-    {
-        "crossing_kind": _crossing_kind,
-        "exit_clear": exit_clear,
-    }
-)
-"""The signals of crossings and of the room behind what ego enters."""

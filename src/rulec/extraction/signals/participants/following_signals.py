@@ -22,7 +22,7 @@ from rulec.extraction.presences import in_presences
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distances
 from rulec.extraction.signals.signal_columns import Measured, rounded, rounded_outward
-from rulec.extraction.signals.signal_passes import SignalPasses, about
+from rulec.extraction.signals.words import word_of_objects
 from rulec.extraction.tracks.driven_road import reach_into
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
@@ -45,6 +45,7 @@ _OUTLIERS = 3.0
 _HAIR_S = 1e-6
 
 
+@word_of_objects("ahead_for")
 def _ahead_for(context: DriveContext) -> Measured:
     """Times (s) for which ego has been behind others in the same lane, with their bounds."""
     surely = relations.ahead_in_lane(context).sure
@@ -170,6 +171,7 @@ def _side(context: DriveContext, cells: Cells) -> Floats:
     return side
 
 
+@word_of_objects("parts_soon")
 def may_part(context: DriveContext) -> Truth:
     """Unknown for participants ahead in ego's lane that leave it soon, False for all others.
 
@@ -205,6 +207,7 @@ def _would_stand(context: DriveContext, at: Cells, spans: EndToEnd) -> NDArray[i
     return stands
 
 
+@word_of_objects("safe_gap")
 def keeps_safe_gap(context: DriveContext) -> Truth:
     """Whether ego keeps its distance from participants that are, or may be, ahead in its lane.
 
@@ -293,7 +296,3 @@ def safe_gaps(context: DriveContext) -> SafeGaps:
     gap, (safe, error) = cells.of(relations.gap(context)), safe_distances(context, cells)
     scale = np.maximum(cells.of(context.ego.scale_error[0]), cells.of(context.tracks.scale_error))
     return SafeGaps(cells, gap, safe, error + scale * np.abs(gap))
-
-
-following_signals = SignalPasses({"ahead_for": about(_ahead_for)})
-"""The signal of times behind others."""

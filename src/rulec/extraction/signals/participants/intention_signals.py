@@ -21,7 +21,7 @@ from rulec.extraction.signals.conduct.others_lamps import (
 )
 from rulec.extraction.signals.ego_lanelets import those_on_lanes
 from rulec.extraction.signals.signal_columns import OfObjects
-from rulec.extraction.signals.signal_passes import SignalPasses, about
+from rulec.extraction.signals.words import word, word_of_objects
 from rulec.extraction.tracks.driven_road import reach_into
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
@@ -30,6 +30,7 @@ from rulec.trace.partly_known.partly_known_values import Truth
 _PUBLIC = ("bus", "rail_vehicle")
 
 
+@word_of_objects("boarding")
 def _boarding(context: DriveContext) -> Truth:
     public = np.any([context.tracks.of_type(kind) for kind in _PUBLIC], axis=0)[:, None]
     if not public.any():
@@ -61,6 +62,7 @@ def _doors_away(context: DriveContext) -> Flags:
     return away
 
 
+@word_of_objects("warning_lights")
 def _warning_lights(context: DriveContext) -> Truth | None:
     if "hazard_lights" not in context.surroundings.whole.shows:
         return None
@@ -87,6 +89,7 @@ def may_have_broken_down(context: DriveContext) -> Flags:
     return warns
 
 
+@word_of_objects("hazard_lights")
 def _hazard_lights(context: DriveContext) -> Truth | None:
     if "hazard_lights" not in context.surroundings.whole.shows:
         return None
@@ -98,6 +101,7 @@ def _far_indicator(context: DriveContext) -> tuple[Flags, Flags]:
     return lit_lamps(context, "left_indicator" if context.side == "right" else "right_indicator")
 
 
+@word_of_objects("turning_far")
 def _turning_far(context: DriveContext) -> Truth:
     """The signal of vehicles that have signalled to turn to the far side, and do.
 
@@ -170,6 +174,7 @@ def _may_turn(context: DriveContext, row: int) -> bool:
     return not inside and passages.crosses_junction((x, y), ahead)
 
 
+@word_of_objects("leaving_stop")
 def _leaving_stop(context: DriveContext) -> Truth:
     """The signal of buses that stand at a stop, signal to leave it, and do so soon."""
     leaves, doubtful = np.zeros((2, *context.relevant.shape), dtype=bool)
@@ -223,6 +228,7 @@ def _last_seen(context: DriveContext) -> NDArray[intp]:
     return last
 
 
+@word_of_objects("about_to_overtake")
 def _about_to_overtake(context: DriveContext) -> Truth:
     """The signal of vehicles that have signalled to pull out to the far side, and do so soon.
 
@@ -260,6 +266,7 @@ def _caught_up(context: DriveContext, cells: Cells) -> Flags:
     return caught_up
 
 
+@word("came_up_beside")
 def _came_up(context: DriveContext) -> OfObjects:
     """The signal of riders that came up beside ego while it waited at a junction.
 
@@ -286,17 +293,3 @@ def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Fla
     appears = beside & (spans.begins_here | ~spans.before(there)) & at_junction
     left = spans.latest(~beside)
     return spans.latest(arrives) > left, spans.latest(appears) > left
-
-
-intention_signals = SignalPasses(
-    {
-        "boarding": about(_boarding),
-        "leaving_stop": about(_leaving_stop),
-        "warning_lights": about(_warning_lights),
-        "hazard_lights": about(_hazard_lights),
-        "turning_far": about(_turning_far),
-        "about_to_overtake": about(_about_to_overtake),
-        "came_up_beside": _came_up,
-    }
-)
-"""The signals of others' lamps and doors, and of what they are about to do."""

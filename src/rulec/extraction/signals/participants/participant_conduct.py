@@ -18,6 +18,7 @@ from rulec.extraction.signals.ego_lanelets import (
 )
 from rulec.extraction.signals.participants.intention_signals import may_have_broken_down
 from rulec.extraction.signals.signal_columns import OfObjects
+from rulec.extraction.signals.words import word, word_of_objects
 from rulec.extraction.tracks.lane_sets import edges
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
@@ -36,6 +37,7 @@ _EDGE_M, _ROOM_M = 0.5, 3.05
 """A parked vehicle is at the edge; the widest vehicle (2.55 m) needs half a metre more to pass."""
 
 
+@word_of_objects("oncoming")
 def oncoming(context: DriveContext) -> Flags:
     """Whether participants come towards ego; see ``comes_towards``."""
     return comes_towards(context)
@@ -88,6 +90,7 @@ def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
     return waits
 
 
+@word_of_objects("goes_across")
 def goes_across(context: DriveContext) -> Truth:
     """Whether participants move across the road more than along it.
 
@@ -139,11 +142,13 @@ def _mostly_along(context: DriveContext, rows: NDArray[intp]) -> Flags:
     return 2 * spans.count_of_last(turns, steps) > steps
 
 
+@word_of_objects("stopped")
 def stopped(context: DriveContext) -> Flags:
     """Whether participants stand."""
     return context.standing
 
 
+@word_of_objects("parked")
 def parked(context: DriveContext) -> Truth:
     """Whether participants are parked; unknown for those that may have broken down."""
     standing = [body.standing for body in context.tracks.participants]
@@ -185,6 +190,7 @@ def _at_edge(others: RoadExtents, there: Flags) -> Flags:
     return at_edge
 
 
+@word_of_objects("on_shoulder")
 def on_shoulder(context: DriveContext) -> Truth:
     """Whether vehicles heading along the road stand beside its lanes or are on a hard shoulder.
 
@@ -206,6 +212,7 @@ def on_shoulder(context: DriveContext) -> Truth:
     return Truth.known(beside).unknown_at(unsure)
 
 
+@word_of_objects("two_wheeled")
 def two_wheeled(context: DriveContext) -> Flags:
     """Whether participants ride on two wheels."""
     two_wheeled = [body.type in _TWO_WHEELED for body in context.tracks.participants]
@@ -216,6 +223,7 @@ def _constant(context: DriveContext, flags: list[bool]) -> Flags:
     return np.array(flags, dtype=bool)[:, None].repeat(context.states, axis=1)
 
 
+@word("in_the_road")
 def in_the_road(context: DriveContext) -> OfObjects:
     """Whether people are on a lane; unknown at the outermost edges there, where they may wait.
 

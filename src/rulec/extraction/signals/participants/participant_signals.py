@@ -10,7 +10,6 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.presences import in_presences, presence_cells, presence_runs
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.lateral_gaps import lateral_gaps
-from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
 from rulec.extraction.signals.measured_numbers import (
     LONGEST_S,
     difference_bounds,
@@ -19,16 +18,8 @@ from rulec.extraction.signals.measured_numbers import (
     own_speed,
     speed_differences,
 )
-from rulec.extraction.signals.participants.following_signals import keeps_safe_gap, may_part
 from rulec.extraction.signals.participants.participant_conduct import (
     comes_towards,
-    goes_across,
-    in_the_road,
-    on_shoulder,
-    oncoming,
-    parked,
-    stopped,
-    two_wheeled,
 )
 from rulec.extraction.signals.settling import only_when, with_one_change
 from rulec.extraction.signals.signal_columns import (
@@ -36,7 +27,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import SignalPasses, about
+from rulec.extraction.signals.words import word_of_objects
 from rulec.scenario.paper_words import LATERALS, STATIONS
 from rulec.trace.partly_known.partly_known_values import Truth
 
@@ -44,6 +35,7 @@ _ASKED_FOR_M = 3.0
 """No law requires more room between a vehicle and a cycle, or people in the road."""
 
 
+@word_of_objects("position")
 def _position(context: DriveContext) -> Measured:
     """The paper's positions; unknown, like stations, for participants at ego's side at first."""
     position = relations.position(context)
@@ -51,6 +43,7 @@ def _position(context: DriveContext) -> Measured:
     return Measured(position, _at_first(context) & at_side)
 
 
+@word_of_objects("station")
 def _station(context: DriveContext) -> Measured:
     """The stations; unknown within the tolerance of places, except while ego or the other passes.
 
@@ -98,6 +91,7 @@ def _passed_unseen(context: DriveContext) -> Flags:
     return passed
 
 
+@word_of_objects("lateral")
 def _lateral(context: DriveContext) -> Measured:
     """The sides of others; unknown within tolerances, except while ego or the other moves over.
 
@@ -111,11 +105,13 @@ def _lateral(context: DriveContext) -> Measured:
     return Measured(codes, laterals.doubtful & ~over, texts=LATERALS)
 
 
+@word_of_objects("gap")
 def _gap(context: DriveContext) -> Measured:
     gap, least, most = gaps(context)
     return Measured(rounded(gap), bounds=rounded_outward(least, most))
 
 
+@word_of_objects("time_headway")
 def _time_headway(context: DriveContext) -> Measured:
     # The speed that the word `speed` has
     cells = presence_cells(context)
@@ -125,16 +121,19 @@ def _time_headway(context: DriveContext) -> Measured:
     return Measured(rounded(headway), bounds=headway_bounds(context))
 
 
+@word_of_objects("lateral_gap")
 def _lateral_gap(context: DriveContext) -> Measured:
     gap, bounds = lateral_gaps(context)
     return Measured(rounded(gap), bounds=bounds)
 
 
+@word_of_objects("speed_difference")
 def _speed_difference(context: DriveContext) -> Measured:
     difference, _ = speed_differences(context)
     return Measured(rounded(difference), bounds=difference_bounds(context))
 
 
+@word_of_objects("time_to_collision")
 def _time_to_collision(context: DriveContext) -> Measured:
     """The time (s) in which ego reaches participants ahead in its lane, at both current speeds."""
     measured, ahead = relations.measured_ahead(context), relations.ahead_in_lane(context)
@@ -160,6 +159,7 @@ def _time_to_collision(context: DriveContext) -> Measured:
     return Measured(found, bounds=(low, high))
 
 
+@word_of_objects("precedes")
 def _precedes(context: DriveContext) -> Flags:
     """The participant next ahead of ego in its lane."""
     cells = relations.possibly_ahead(context)
@@ -173,6 +173,7 @@ def _precedes(context: DriveContext) -> Flags:
     return ahead.laid(gap == ahead.of(ahead.least(gap)))
 
 
+@word_of_objects("one_between")
 def _one_between(context: DriveContext) -> Truth:
     """Whether another vehicle ahead in ego's lane is nearer to ego than a participant ahead.
 
@@ -188,30 +189,3 @@ def _one_between(context: DriveContext) -> Truth:
     between = gap > nearest + place
     possible = between | ((gap > nearest_of_all - place) & (gap > nearest_of_all))
     return Truth(cells.laid(between), cells.laid(possible))
-
-
-participant_signals = SignalPasses(
-    {
-        "position": about(_position),
-        "station": about(_station),
-        "lateral": about(_lateral),
-        "gap": about(_gap),
-        "time_headway": about(_time_headway),
-        "lateral_gap": about(_lateral_gap),
-        "speed_difference": about(_speed_difference),
-        "time_to_collision": about(_time_to_collision),
-        "safe_gap": about(keeps_safe_gap),
-        "parts_soon": about(may_part),
-        "precedes": about(_precedes),
-        "one_between": about(_one_between),
-        "oncoming": about(oncoming),
-        "goes_across": about(goes_across),
-        "stopped": about(stopped),
-        "parked": about(parked),
-        "on_shoulder": about(on_shoulder),
-        "leads_elsewhere": about(leads_elsewhere),
-        "two_wheeled": about(two_wheeled),
-        "in_the_road": in_the_road,
-    }
-)
-"""The signals about objects."""

@@ -10,6 +10,7 @@ from rulec.array_types import Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.signal_columns import Measured
+from rulec.extraction.signals.words import word
 
 _INDICATORS = frozenset({"left_indicator", "right_indicator"})
 
@@ -25,6 +26,7 @@ _ABRUPT_MPS, _ABRUPT_S = 2.5, 2.0
 """Who changes lanes faster than anybody drives began to at most this long (s) before."""
 
 
+@word("indicator")
 def indicator(context: DriveContext) -> Measured | None:
     """Ego's indicator, if the recording contains its lamps.
 

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.conduct.lane_changes.indicator_signals import indicator
 from rulec.extraction.signals.conduct.lane_changes.lanes_from_behind import come_into_lane
 from rulec.extraction.signals.conduct.lane_changes.squeezing_in import WayIn, squeezed
 from rulec.extraction.signals.conduct.lane_changes.turning_round import have_to_brake_for_turn
@@ -24,7 +23,7 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
 from rulec.extraction.signals.conduct.u_turns import swings_round, u_turns
 from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.signal_columns import Caused, ids_by_state
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.words import word
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.cells import Cells
@@ -45,6 +44,7 @@ _ASTRIDE_S = 1.0
 _HAIR_M = 0.01
 
 
+@word("lane_change")
 def _lane_change(context: DriveContext) -> Truth:
     """Whether ego has changed lanes; unknown within tolerances, and where ego turns round or off.
 
@@ -164,6 +164,7 @@ def _has_followed(context: DriveContext, lane: int, begin_m: float, end: int) ->
     return True
 
 
+@word("lane_is_clear")
 def _lane_is_clear(context: DriveContext) -> Caused:
     """Whether no vehicle has to brake or make way for ego as it comes into a lane.
 
@@ -338,13 +339,3 @@ def _pulls_away(context: DriveContext, states: NDArray[intp]) -> Flags:
         left < faster * context.thresholds.reaction_s
     )
     return away
-
-
-lane_change_signals = SignalPasses(
-    {
-        "lane_change": _lane_change,
-        "lane_is_clear": _lane_is_clear,
-        "indicator": indicator,
-    }
-)
-"""The signals of ego's lane changes, and of the lamps that announce them."""
