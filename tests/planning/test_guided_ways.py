@@ -60,7 +60,7 @@ def test_no_path_is_cheaper_than_it_promises(scene):
     found = found_in(scene)
     if found is None:
         return
-    search, graph = found._search, found.graph
+    search, graph = found.witness_search, found.graph
     ways = islice(GuidedSearch(found.product, graph, search.bounds).guided(10_000), 400)
     promises = {way.maneuver.nodes: way.promises for way in ways}
     for one in islice(cheapest(found.product), 400):
@@ -75,7 +75,9 @@ def test_the_first_one_is_the_cheapest(scene):
     found = found_in(scene)
     if found is None:
         return
-    every = [with_trajectory(one, found.graph, found._search) for one in cheapest(found.product)]
+    every = [
+        with_trajectory(one, found.graph, found.witness_search) for one in cheapest(found.product)
+    ]
     costs = [one.cost for one in every if one is not None]
     first = found.cheapest(1)
     assert bool(first) == bool(costs)
@@ -88,7 +90,7 @@ def test_a_beam_as_wide_as_the_graph_loses_nothing(scene):
     found = found_in(scene)
     if found is None:
         return
-    every, bounds = found.product, found._search.bounds
+    every, bounds = found.product, found.witness_search.bounds
     ways = GuidedSearch(every, found.graph, bounds)
     guided = {way.maneuver.nodes for way in ways.guided(10_000)}
     beam = list(ways.beam(10_000))
@@ -107,7 +109,7 @@ def test_where_beginnings_are_too_many_a_way_is_found_all_the_same(scene):
         patch.setattr(proven, "MOST_BOUNDS", 1)
         patch.setattr(proven, "MORE_BOUNDS", 0)
         patch.setattr(proven, "cheapest", lambda product: iter(()))
-        (other,) = proven.proven(found.product, 1, found.graph, found._search) or (None,)
+        (other,) = proven.proven(found.product, 1, found.graph, found.witness_search) or (None,)
     assert (other is None) == (best is None)
     assert best is None or other.cost >= best.cost - ALIKE
 

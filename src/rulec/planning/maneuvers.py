@@ -173,9 +173,9 @@ class Maneuvers(Rows):
 
     def _drivable(self, product: Product[Memory], n: int) -> list[Maneuver]:
         """The ``n`` cheapest of a product; with bounds of ego's motion, those proved drivable."""
-        if self._search is None:
+        if self.witness_search is None:
             return _first(n, cheapest(product))
-        return proven(product, n, self.graph, self._search)
+        return proven(product, n, self.graph, self.witness_search)
 
     @cached_property
     def in_way(self) -> tuple[str, ...]:
@@ -184,10 +184,15 @@ class Maneuvers(Rows):
         Empty if it is drivable, or if ego's bounds alone prevent it.
         """
         first = next(cheapest(self.possible), None)
-        return () if first is None or self._search is None else self._search.in_way(first.nodes)
+        return (
+            ()
+            if first is None or self.witness_search is None
+            else self.witness_search.in_way(first.nodes)
+        )
 
     @cached_property
-    def _search(self) -> WitnessSearch | None:
+    def witness_search(self) -> WitnessSearch | None:
+        """The search for trajectories; None if ego's motion has no bounds."""
         if self.graph.bounds is None:
             return None
         # Imported late: NumPy and the solver take 50 ms, and are not always needed.
@@ -242,10 +247,10 @@ class Maneuvers(Rows):
     def least_braking(self) -> float | None:
         """The least braking (m/s²) that every maneuver needs, if that is more than 4; else None."""
         least = emergencies.least_braking(self.graph)
-        if least is None or self._search is None:
+        if least is None or self.witness_search is None:
             return least
         every = explore(node_transformers(self.paths, []))
-        return least_promised(every, self.graph, self._search.braking_bounds) or least
+        return least_promised(every, self.graph, self.witness_search.braking_bounds) or least
 
     @cached_property
     def least_braking_later(self) -> float | None:
@@ -253,7 +258,7 @@ class Maneuvers(Rows):
 
         None if that is at most 4. After its end ego becomes as slow as what is ahead of it then.
         """
-        search = self._search
+        search = self.witness_search
         return (
             None if search is None else emergencies.least_braking_later(self.graph, search.others)
         )
@@ -296,7 +301,7 @@ class Maneuvers(Rows):
         If ego's motion has bounds, only maneuvers proved drivable are considered.
         """
         every = variants(self.product, self._places)
-        search = self._search
+        search = self.witness_search
         if search is None:
             return _first(n, every)
         driven = (

@@ -20,6 +20,7 @@ from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.batch.findings import Findings, JudgedTrace
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleFor, Verdict, Violation, rule_for
 from rulec.scoring.candidate_score import CandidateScore, lost_candidate, without_drives
+from rulec.trace.trace_arrays import TraceArrays
 
 _NOBODY = -1
 
@@ -84,6 +85,16 @@ class CandidateCharges:
         if self.again is None:
             return found
         return without_drives(found, len(drives), partial(self.again, self.number))
+
+
+def traces_of(candidate: CandidateCharges | CandidateScore) -> list[TraceArrays]:
+    """The judged drives of a candidate that has them, without making their verdicts."""
+    return [
+        own.drive.arrays
+        for own in candidate.drives
+        if isinstance(own, JudgedDrive | DriveVerdict)
+        and not isinstance(own.judged if isinstance(own, JudgedDrive) else own.answer, NotJudged)
+    ]
 
 
 def _judged(drive: JudgedDrive | _Judged | NoDrive) -> _Judged | NoDrive:

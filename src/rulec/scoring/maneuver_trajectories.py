@@ -6,32 +6,34 @@ its verdict may be certain where that of the maneuver is open.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 from numpy import float64
-from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cell_words.ego_boxes import body_size
 from rulec.cell_words.probe_drives import driver
-from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.monitoring.moments.drive_facts import facts_of
 from rulec.monitoring.verdict import Verdict
-from rulec.partition.motion.witness_trajectory import WitnessTrajectory
 from rulec.planning import Maneuvers
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.recordings.recording import Recording
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 from rulec.scenario.recorded.scene_origin import SceneOrigin
 from rulec.scoring.candidate_score import CandidateScore
+from rulec.scoring.charges import traces_of
+from rulec.scoring.sampled_ways import sampled_ways
 from rulec.scoring.score import score
 from rulec.scoring.scores import Scores
 from rulec.scoring.scoring_messages import NO_TRAJECTORY
 from rulec.scoring.traffic_world import TrafficWorld
+from rulec.trace.trace_arrays import TraceArrays
 
 _STANDING_MPS = 0.05
 """Slower than this, ego's heading is that of the road."""
@@ -41,16 +43,24 @@ _MOST_TURNED = np.pi / 4
 
 _ROUNDING = 1e-6
 
+_MOST_TESTED = 24
+"""Of so many ways it is looked up which rules they meet, which takes longer than their scores."""
+
+_Motion: TypeAlias = Callable[[Floats], Floats]
+"""By times (s) a motion: a row each of s, speed along, d, speed across (m, m/s)."""
+
 
 @dataclass(frozen=True, slots=True)
 class TestedRules:
-    """The hard rules whose trigger a trajectory surely meets: those kept, and the undecided ones.
+    """The hard rules whose trigger a trajectory surely meets: those kept, and the open ones.
 
-    A rule without a trigger is met by all.
+    Beside them those that are not judged, for lack of words. A rule without a trigger is met by
+    all.
     """
 
     kept: tuple[str, ...]
     undecided: tuple[str, ...]
+    not_judged: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +69,8 @@ class TrajectoryScores:
 
     Violations are those of states ``step_s`` (s) apart, the first one after the scene's beginning;
     the last one is at ``until_s`` (s). ``is_cut`` if the recording ends before the horizon.
+    ``sampled`` are the maneuvers of further ways that ego may drive, with whether one of these is
+    lawful.
     """
 
     step_s: float
@@ -66,19 +78,29 @@ class TrajectoryScores:
     is_cut: bool
     of: Mapping[tuple[int, ...], CandidateScore]
     tested: Mapping[tuple[int, ...], TestedRules]
+    sampled: Mapping[tuple[int, ...], bool]
 
     @property
-    def lawful(self) -> frozenset[tuple[int, ...]]:
+    def lawful_as_driven(self) -> frozenset[tuple[int, ...]]:
         """The maneuvers whose trajectory keeps each hard rule that it meets, and meets some."""
         return frozenset(
             nodes
             for nodes, score in self.of.items()
-            if score.is_judged
-            and not score.off_road
+            if _may_be_lawful(score)
             and self.tested[nodes].kept
             and not self.tested[nodes].undecided
-            and all(violation.strength == "soft" for violation in score.violations)
         )
+
+    @property
+    def lawful(self) -> frozenset[tuple[int, ...]]:
+        """The maneuvers of which a trajectory or another way does."""
+        sampled = {nodes for nodes, is_lawful in self.sampled.items() if is_lawful}
+        return self.lawful_as_driven | sampled
+
+    @property
+    def n_tried(self) -> int:
+        """The number of maneuvers tried."""
+        return len(self.of.keys() | self.sampled.keys())
 
     def time_s(self, step: int) -> float:
         """The time (s) of a state of a trajectory."""
@@ -88,37 +110,82 @@ class TrajectoryScores:
 def trajectory_scores(maneuvers: Maneuvers, listed: Sequence[Maneuver]) -> TrajectoryScores | None:
     """The scores of those maneuvers that have a trajectory; None if there is no world for them.
 
-    Also if the maneuvers continue a past that is not the recording's. Raises RulecError R0507.
+    And whether further ways that ego may drive are lawful. None, too, if the maneuvers continue a
+    past that is not the recording's. Raises RulecError R0507.
     """
     driven = [maneuver for maneuver in listed if maneuver.trajectory is not None]
     n_states = _scored_states(maneuvers)
-    if not driven or not n_states or maneuvers.after is not None:
+    if not n_states or maneuvers.after is not None:
         return None
     step_s = _origin(maneuvers).recording.step_s
-    scores = score_trajectories(maneuvers, driven)
-    found = zip(driven, scores.candidates, strict=True)
-    of = {maneuver.nodes: candidate for maneuver, candidate in found}
-    tested = {nodes: _tested(candidate, scores.rules) for nodes, candidate in of.items()}
+    of: dict[tuple[int, ...], CandidateScore] = {}
+    tested: dict[tuple[int, ...], TestedRules] = {}
+    if driven:
+        scores = score_trajectories(maneuvers, driven)
+        of = {one.nodes: own for one, own in zip(driven, scores.candidates, strict=True)}
+        tested = {nodes: _tested(candidate, scores.rules) for nodes, candidate in of.items()}
     until_s = round(n_states * step_s, 6)
-    return TrajectoryScores(step_s, until_s, until_s < _horizon_s(maneuvers) - step_s, of, tested)
+    return TrajectoryScores(
+        step_s=step_s,
+        until_s=until_s,
+        is_cut=until_s < _horizon_s(maneuvers) - step_s,
+        of=of,
+        tested=tested,
+        sampled=_sampled(maneuvers, n_states, {x for own in tested.values() for x in own.kept}),
+    )
+
+
+def _sampled(maneuvers: Maneuvers, n_states: int, likely: Set[str]) -> dict[tuple[int, ...], bool]:
+    """The maneuvers of ways that ego may drive, with whether one of a maneuver's is lawful.
+
+    The gentlest are looked at first, and no more than a number of them. It is ``likely`` that they
+    meet some of these rules, which other trajectories keep.
+    """
+    search = maneuvers.witness_search
+    ways = [] if search is None else sampled_ways(maneuvers.graph, search.others)
+    if not ways:
+        return {}
+    scores = _scores(maneuvers, [way.at for way in ways], n_states)
+    hard = {rule.name for rule in scores.rules.rules if rule.strength == "hard"}
+    found = {way.nodes: False for way in ways}
+    for number in scores.perhaps_allowed.nonzero()[0].tolist()[:_MOST_TESTED]:
+        nodes, traces = ways[number].nodes, scores.traces_of(number)
+        if found[nodes] or not traces:
+            continue
+        # Few rules are in doubt, and which others it meets takes longest
+        doubtful = scores.open_rules[number]
+        found[nodes] = not _met(traces, scores.rules, hard & doubtful) and bool(
+            _met(traces, scores.rules, likely - doubtful)
+            or _tested(scores.candidates[number], scores.rules).kept
+        )
+    return found
+
+
+def _may_be_lawful(score: CandidateScore) -> bool:
+    """Whether a drive is on the road, and violates no hard rule."""
+    is_broken = any(violation.strength == "hard" for violation in score.violations)
+    return score.is_judged and not score.off_road and not is_broken
 
 
 def _tested(score: CandidateScore, rules: CompiledRulebook) -> TestedRules:
     """The hard rules that a trajectory, with its past, surely meets."""
-    met: set[str] = set()
-    # Opportunities of all rules, also of those that are not judged
-    nothing_known = Verdict("", ())
-    for driven in score.drives:
-        if isinstance(driven, DriveVerdict) and isinstance(driven.answer, Verdict):
-            exposures = facts_of(driven.drive.arrays, rules, nothing_known).exposure
-            met |= {name for name, exposure in exposures.items() if exposure.opportunities}
-    doubtful = {x.rule for x in score.open}.union(x.rule for x in score.not_judged)
-    broken = {violation.rule for violation in score.violations}
-    tested = [x.name for x in rules.rules if x.strength == "hard" and x.name in met - broken]
+    hard = {rule.name for rule in rules.rules if rule.strength == "hard"}
+    met = _met(traces_of(score), rules, hard.difference(x.rule for x in score.violations))
+    doubtful, lacking = ({x.rule for x in those} for those in (score.open, score.not_judged))
+    tested = [rule.name for rule in rules.rules if rule.name in met]
     return TestedRules(
-        tuple([name for name in tested if name not in doubtful]),
+        tuple([name for name in tested if name not in doubtful | lacking]),
         tuple([name for name in tested if name in doubtful]),
+        tuple([name for name in tested if name in lacking]),
     )
+
+
+def _met(traces: Sequence[TraceArrays], rules: CompiledRulebook, asked: Set[str]) -> set[str]:
+    """The rules among these, also those not judged, whose trigger surely holds somewhere."""
+    others = tuple([rule.name for rule in rules.rules if rule.name not in asked])
+    known = Verdict("", (), kept_regardless=others)
+    exposures = [facts_of(own, rules, known).exposure for own in (traces if asked else ())]
+    return {name for own in exposures for name, exposure in own.items() if exposure.opportunities}
 
 
 def _scored_states(maneuvers: Maneuvers) -> int:
@@ -182,23 +249,24 @@ def score_trajectories(maneuvers: Maneuvers, listed: Sequence[Maneuver]) -> Scor
             f"maneuver {driven.index(None)} has no trajectory",
             help="take maneuvers of `cheapest`, or with a trajectory (`maneuver.trajectory`)",
         )
+    return _scores(maneuvers, [trajectory.at for trajectory in known], n_states)
+
+
+def _scores(maneuvers: Maneuvers, ways: Sequence[_Motion], n_states: int) -> Scores:
+    """The scores of motions along the scene's road, for so many of the recording's steps."""
     origin, account = _origin(maneuvers), maneuvers.graph.scenario.account
     is_mirrored = account is not None and account.mirrored
     times_s = np.arange(1, n_states + 1, dtype=float64) * origin.recording.step_s
-    paths = np.empty((len(known), n_states, 4))
-    for path, trajectory in zip(paths, known, strict=True):
-        path[:] = _in_recording(origin, trajectory, times_s)
+    paths = np.array([_in_recording(origin, motion_at(times_s)) for motion_at in ways])
     if is_mirrored:
         paths[:, :, (1, 2)] *= -1
     world = _world_of(maneuvers, origin, is_mirrored=is_mirrored)
     return score(paths, world, maneuvers.rules, world.past)
 
 
-def _in_recording(
-    origin: SceneOrigin, trajectory: WitnessTrajectory, times_s: NDArray[float64]
-) -> NDArray[float64]:
-    """A trajectory's x, y (m), heading (rad) and speed (m/s) in the recording, a row each time."""
-    s, along, d, across = trajectory.at(times_s).T
+def _in_recording(origin: SceneOrigin, motion: Floats) -> Floats:
+    """A motion's x, y (m), heading (rad) and speed (m/s) in the recording, a row each time."""
+    s, along, d, across = motion.T
     places, road = origin.places(s, d)
     turned = np.arctan2(across, np.maximum(along, _STANDING_MPS))
     turned[along < _STANDING_MPS] = 0.0

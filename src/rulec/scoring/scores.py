@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -20,8 +20,9 @@ from rulec.diagnostics.phrases import first_of
 from rulec.monitoring.verdict import Violation
 from rulec.planning.ranking.penalties import PenaltyOrder, PenaltyRank, ranks_of
 from rulec.scoring.candidate_score import CandidateScore
-from rulec.scoring.charges import Charged, ScoreColumns, columns_of
+from rulec.scoring.charges import CandidateScores, Charged, ScoreColumns, columns_of, traces_of
 from rulec.scoring.score_margins import RuleMargin, margins_of
+from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import Rows
 
 _MOST_WORTH = 1_000_000
@@ -203,6 +204,21 @@ class Scores(Rows):
             hint = did_you_mean(rule, known)
             raise ValueError(f"{self.rules.name} has no rule `{rule:.40}`" + (hint and f"; {hint}"))
         return [_outcome(score, rule) for score in self.candidates]
+
+    def traces_of(self, number: int) -> list[TraceArrays]:
+        """The judged drives of a candidate, without making their verdicts."""
+        known = self.candidates
+        return traces_of(
+            known.charges[number] if isinstance(known, CandidateScores) else known[number]
+        )
+
+    @cached_property
+    def open_rules(self) -> Sequence[Set[str]]:
+        """The names of the rules that are charged to each candidate as open."""
+        found: list[set[str]] = [set() for _ in range(len(self))]
+        for candidate, rule in zip(*(own.tolist() for own in self._columns.open), strict=True):
+            found[candidate].add(self.rules.rules[rule].name)
+        return found
 
     @cached_property
     def _columns(self) -> ScoreColumns:

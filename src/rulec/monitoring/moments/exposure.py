@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.thresholds import exact_step
-from rulec.diagnostics import SourceLocation
 from rulec.logic.bounds import in_steps
 from rulec.logic.opportunities import breach_of
 from rulec.logic.semantics import steps_to_settle
@@ -33,6 +32,7 @@ from rulec.monitoring.moments.trace_truth import (
     TraceTruth,
 )
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
+from rulec.resource_limits import LOOKBACK
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.value_display import short_repr
 
@@ -114,22 +114,21 @@ def alike_exposures(
 def _watched(rulebook: CompiledRulebook, step_s: Fraction) -> Sequence[_Watched]:
     known: dict[Fraction, Sequence[_Watched]] = rulebook.prepared.setdefault(_Watched, {})
     if step_s not in known:
-        known[step_s] = [
-            _watched_rule(rule, step_s, rulebook.place_of(rule.name)) for rule in rulebook.rules
-        ]
+        known[step_s] = [_watched_rule(rule, step_s, rulebook) for rule in rulebook.rules]
     return known[step_s]
 
 
-def _watched_rule(rule: CompiledRule, step_s: Fraction, place: SourceLocation | None) -> _Watched:
+def _watched_rule(rule: CompiledRule, step_s: Fraction, rulebook: CompiledRulebook) -> _Watched:
     breach = in_steps(breach_of(rule.formula), step_s)
-    if rule.trigger is None:
-        return _Watched(rule, None, ReadyFormula(breach, place=place))
-    trigger = in_steps(rule.trigger, step_s)
+    trigger = None if rule.trigger is None else in_steps(rule.trigger, step_s)
     # Both have the same columns if the last state is repeated for ever.
-    settles = max(steps_to_settle(breach), steps_to_settle(trigger))
-    return _Watched(
-        rule, ReadyFormula(trigger, settles, place), ReadyFormula(breach, settles, place)
-    )
+    settles = steps_to_settle(breach)
+    settles = settles if trigger is None else max(settles, steps_to_settle(trigger))
+    if settles > LOOKBACK.value():
+        # The rulebook's source is read again for a place
+        LOOKBACK.within(settles, rulebook.place_of(rule.name), "the formula")
+    ready = None if trigger is None else ReadyFormula(trigger, settles)
+    return _Watched(rule, ready, ReadyFormula(breach, settles))
 
 
 def _tally(truth: TraceTruth, watched: _Watched, outcomes: Mapping[Chosen, Outcome]) -> _Tally:

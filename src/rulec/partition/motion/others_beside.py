@@ -187,6 +187,15 @@ class OthersBeside:
                     if there[j]:
                         yield self.cut(name, side, j)
 
+    def are_clear(self, s: Row, d: Row) -> NDArray[np.bool_]:
+        """Which of some motions, a row of places at ``times`` each, overlap nothing."""
+        clear = np.ones(len(s), dtype=bool)
+        for closed in self._closed.values():
+            beyond = closed.clearances(slice(None), (s, s), (d, d))
+            hit = closed.there & (np.maximum.reduce(list(beyond.values())) < -_HAIR_M)
+            clear &= ~hit.any(axis=1)
+        return clear
+
     def hits(self, solution: Solution) -> Iterator[tuple[str | int, list[int]]]:
         """What a solution overlaps, obstacles or places without a lane, and the times' numbers."""
         for name, _, hit in self._clearances(solution, len(self.times)):

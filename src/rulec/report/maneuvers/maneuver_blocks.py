@@ -160,8 +160,11 @@ def driven_counts(driven: TrajectoryScores | None) -> list[str]:
     """How many of the trajectories keep every hard rule whose trigger they meet, or why none."""
     if driven is None:
         return []
+    silent = dict.fromkeys(rule for own in driven.tested.values() for rule in own.not_judged)
     why = "a trajectory keeps each hard rule put to the test"
-    if not driven.lawful:
+    if driven.lawful and silent:
+        why = f"keep all put to the test but {first_of([*silent], MOST_NAMED)}, not judged"
+    elif not driven.lawful:
         hard = (
             x.rule for own in driven.of.values() for x in own.violations if x.strength == "hard"
         )
@@ -171,7 +174,7 @@ def driven_counts(driven: TrajectoryScores | None) -> list[str]:
         parts = [f"violated {first_of(broken, MOST_NAMED)}"] if broken else []
         parts += [f"undecided on {first_of(others, MOST_NAMED)}"] if others else []
         why = "; ".join(parts) or "no hard rule is put to the test"
-    return [visible(f"lawful      {len(driven.lawful)} of {len(driven.of)} tried: {why}")]
+    return [visible(f"lawful      {len(driven.lawful)} of {driven.n_tried} tried: {why}")]
 
 
 def _as_driven(maneuver: Maneuver, driven: TrajectoryScores | None) -> list[str]:
@@ -193,8 +196,10 @@ def _as_driven(maneuver: Maneuver, driven: TrajectoryScores | None) -> list[str]
     tested = driven.tested[maneuver.nodes]
     if tested.undecided:
         parts.append(f"undecided on {first_of(tested.undecided, MOST_NAMED)}")
-    if maneuver.nodes in driven.lawful:
+    if maneuver.nodes in driven.lawful_as_driven:
         parts.insert(0, "lawful")
+    elif maneuver.nodes in driven.lawful:
+        parts.append("another way through its cells is lawful")
     if tested.kept:
         parts.append(f"keeps {counted(len(tested.kept), 'hard rule')} put to the test")
     until = f" until {driven.until_s:g} s" if driven.is_cut else ""

@@ -61,13 +61,15 @@ class TrajectoryVerdictData(JsonPart, frozen=True, kw_only=True):
     ``satisfied``, by the rules that can be judged, is null if no hard rule is violated and one is
     open, or ego leaves the road in ``off_road`` of the recording's steps. It is ``lawful`` if it
     violates none, has ``kept`` some whose trigger it surely meets, and is ``undecided`` on none of
-    these. A violation's ``lost_s`` is null if the end decides.
+    these; ``not_judged`` are others of these, which lack words. A violation's ``lost_s`` is null if
+    the end decides.
     """
 
     satisfied: bool | None
     lawful: bool
     kept: Sequence[str]
     undecided: Sequence[str]
+    not_judged: Sequence[str]
     until_s: float
     violations: Sequence[ManeuverViolation]
     open: Sequence[OpenData]
@@ -204,8 +206,8 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
 
     ``free`` are those all of whose trajectories keep every hard rule (``satisfying``), ``closed``
     those all of whose trajectories violate one (``violating``). Of the others, ``lawful`` are those
-    tried in a recorded scene whose trajectory keeps each hard rule whose trigger it surely meets,
-    and meets some; the rest is ``undecided``.
+    tried in a recorded scene of which a trajectory keeps each hard rule whose trigger it surely
+    meets, as far as these are judged, and meets some; the rest is ``undecided``.
 
     For ``open`` maneuvers, besides those ``satisfying``, the verdict depends on ``unknown`` values;
     ``exact`` is false if there were too many cases to examine, so that some verdicts may be known

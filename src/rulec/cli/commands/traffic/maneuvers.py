@@ -213,7 +213,7 @@ def _driven(
     maneuvers: lazy.Maneuvers, shown: Sequence[lazy.Maneuver]
 ) -> lazy.TrajectoryScores | None:
     """The verdicts on the trajectories of maneuvers in a recorded scene."""
-    if maneuvers.words is None or not shown:
+    if maneuvers.words is None:
         return None
     try:
         with contained("verdicts on trajectories"):
