@@ -15,8 +15,12 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
-from rulec.limit_messages import NO_LIMIT, OVER_LIMIT
+from rulec.diagnostics.code import Code
 from rulec.resources import variable_set
+
+OVER_LIMIT = Code("R0718")
+
+NO_LIMIT = Code("R0719")
 
 VARIABLE: Final = "RULEC_LIMITS"
 """The environment variable: settings such as ``choices=5000000``, separated by spaces."""

@@ -7,9 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.analysis.lint.conflict_findings import conflicts
-from rulec.analysis.lint.conflict_search import common_objects, conflict
+from rulec.analysis.lint.conflict_search import common_objects, conflict, have_harmless_state
 from rulec.analysis.lint.finding_messages import undecided_diagnostic
-from rulec.analysis.lint.harmless_states import have_harmless_state
 from rulec.analysis.lint.questions import ComparedRules, Question, RuleAnswers, answers_to
 from rulec.analysis.lint.redundancy import (
     MOST_PREMISES,

@@ -167,8 +167,8 @@ def test_a_process_that_cannot_start_is_no_traceback(monkeypatch):
 
 def checking(automaton, formula, semantics="stutter", cpu_s=None):
     """Ask whether Spot's automaton of a text is the formula's."""
-    from rulec.automata.spot_bridge.equivalence_check import check
     from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
+    from rulec.automata.spot_bridge.translation import check
 
     past = eliminate_past(formula)
     propositions = [*atoms_of(formula), *(one.atom for one in past.memories)]

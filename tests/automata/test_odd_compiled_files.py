@@ -6,8 +6,7 @@ from fractions import Fraction
 import pytest
 
 from rulec import compile_rulebook, parse_rulebook
-from rulec.automata.bundle.bundle_digest import with_digest
-from rulec.automata.bundle.bundle_file import from_json, to_json
+from rulec.automata.bundle.bundle_file import from_json, to_json, with_digest
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Bound, Unary, UnaryOperator
 from support.builders.rulebooks import Q, always, book, compile_here, implies, near, rule

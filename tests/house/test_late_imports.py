@@ -24,7 +24,7 @@ POOL = "worker processes take 15 ms, only where there are several"
 
 LATE = {
     "__init__.py": (1, "importing the package imports nothing"),
-    "automata/bundle/minisign.py": (2, OPTIONAL),
+    "automata/bundle/required_signature.py": (2, OPTIONAL),
     "automata/compiled_cache.py": (2, COMPILER),
     "automata/outcome_machine.py": (1, NUMPY),
     "automata/worker/worker_answers.py": (2, "Spot is optional; one compiler is chosen"),

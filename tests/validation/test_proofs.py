@@ -366,7 +366,7 @@ def test_a_name_that_is_there_twice_is_refused():
     text = (
         '{\n "format": "rulec compiled rulebook",\n "version": 6,\n "rules": [],\n "rules": []}\n'
     )
-    from rulec.automata.bundle.bundle_digest import with_digest
+    from rulec.automata.bundle.bundle_file import with_digest
 
     with pytest.raises(UnreadableError):
         proofs_of(with_digest(text).encode())

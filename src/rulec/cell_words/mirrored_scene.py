@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.cell_words.cell_messages import changed_scene
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.code import Code
 from rulec.extraction.selection import RequestedDrives, chosen_side
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.scenario import Scenario
@@ -41,3 +42,17 @@ def _read_again(source: SceneSource, scene: Scenario, *, mirrored: bool) -> Scen
     assert read.account is not None  # it is a recorded scene
     account = replace(read.account, mirrored=mirrored)
     return replace(read, account=account, horizon_s=scene.horizon_s, step_s=scene.step_s)
+
+
+CHANGED_SCENE = Code("R0418")
+
+
+def changed_scene(file: str, recorded: str, rulebook: str, side: str) -> RulecError:
+    """A changed scene, recorded on one side, for a rulebook of the other one."""
+    return CHANGED_SCENE.error(
+        SourceLocation(file),
+        f"traffic keeps to the {recorded} here, and in `{rulebook}` to the {side}, and the scene "
+        "was changed after it was read from its recording: it cannot be mirrored",
+        help=f"change the recording instead, or use a rulebook of traffic that keeps to the "
+        f"{recorded}",
+    )

@@ -12,6 +12,8 @@ from rulec.automata.alphabet import knowledge, propositions_of, reads_of
 from rulec.automata.axiom_groups import axiom_groups
 from rulec.automata.compiler import RuleFormula
 from rulec.automata.tables import MOST_STEPS_AHEAD
+from rulec.diagnostics import RulecError
+from rulec.diagnostics.code import Code
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import total_bound
 from rulec.logic.fold import fold_constants
@@ -20,7 +22,6 @@ from rulec.logic.printing import formula_text
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.spoken_words import spoken_formula
 from rulec.logic.sentences.wording import atom_clause, comparison_clause
-from rulec.ltl_export.ltl_messages import too_long
 from rulec.ltl_export.ltl_terms import Term, Terms, conjunction, size_of
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.rulebook.rules.axiom_instances import axiom_instances
@@ -138,3 +139,15 @@ def _in_words(proposition: ltl.Proposition, phrases: Mapping[str, str]) -> str:
         return comparison_clause(spoken, ENGLISH, holds=True)
     assert isinstance(spoken, ltl.Atom)
     return atom_clause(spoken, ENGLISH, holds=True)
+
+
+TOO_LONG_IN_LTL = Code("R0754")
+
+
+def too_long(rule: Rule, why: str) -> RulecError:
+    """The error (R0754) about a rule."""
+    return TOO_LONG_IN_LTL.error(
+        rule.span,
+        f"rule `{rule.name}` is too long in LTL: {why}",
+        help="use a larger step, or its automaton, which is small: leave out `--emit ltl`",
+    )

@@ -2,7 +2,7 @@
 
 import json
 
-from rulec.automata.bundle.bundle_digest import with_digest
+from rulec.automata.bundle.bundle_file import with_digest
 
 
 def sealed(data):

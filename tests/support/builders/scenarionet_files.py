@@ -8,7 +8,7 @@ import pickle
 import numpy as np
 
 from rulec.recordings.encodings.wire_format import Field, Words
-from rulec.recordings.waymo import waymo_tables as tables
+from rulec.recordings.waymo import waymo_file as tables
 
 TYPES = {1: "VEHICLE", 2: "PEDESTRIAN", 3: "CYCLIST", 4: "OTHER"}
 STATES = [

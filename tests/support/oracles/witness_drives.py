@@ -26,7 +26,7 @@ _ON_S, _ON_MPS, _ON_MPS2 = 8.0, 10.0, 3.0
 def witnesses(found, most):
     """Maneuvers that violate nothing for sure, the cheapest first, each with its trajectory."""
     paths = (path.nodes for path in islice(cheapest(found.possible), 40 * most))
-    driven = ((nodes, found._search.of(nodes)) for nodes in paths)
+    driven = ((nodes, found.witness_search.of(nodes)) for nodes in paths)
     return list(islice((pair for pair in driven if pair[1] is not None), most))
 
 

@@ -9,7 +9,6 @@ from functools import partial
 
 from rulec.analysis.believable_states import plausible_states
 from rulec.analysis.counterexample import common_step
-from rulec.analysis.lint.harmless_states import have_harmless_state
 from rulec.analysis.object_typings import answers_for_types
 from rulec.analysis.possible_traces import is_possible, steadied
 from rulec.analysis.shared_compilation import AnalyzedRule
@@ -19,8 +18,9 @@ from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.joint_alphabet import JointAlphabet, JointLetter
-from rulec.witnesses.letter_functions import monitor_function
+from rulec.witnesses.letter_functions import LetterFunction, counts_read, monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
+from rulec.witnesses.relevant_axioms import ground_axioms, hold_by_default
 from rulec.witnesses.shortest_words import MOST_STATES, MOST_STEPS, ProductState
 from rulec.witnesses.trace_synthesis import synthesize_trace
 from rulec.witnesses.undecided import UndecidedError
@@ -235,3 +235,51 @@ def _shortest(
                 words[target] = word
                 waiting.append(target)
     return None
+
+
+def have_harmless_state(
+    monitors: Sequence[MealyMonitor], functions: Sequence[LetterFunction], universe: ObjectUniverse
+) -> bool:
+    """Whether some state is harmless to all monitors, whose letters the functions compute.
+
+    False is inconclusive: states that depend on earlier ones may keep them together. Raises
+    UndecidedError.
+    """
+    harmless = [harmless_classes(monitor) for monitor in monitors]
+    if not all(harmless):
+        return False
+    contents = [
+        LetterFunction(function.reads, tuple([int(symbol in own) for symbol in function.letters]))
+        for function, own in zip(functions, harmless, strict=True)
+    ]
+    reads = [read for content in contents for read in content.reads]
+    # Counts have no default: the universe's own objects may be among those counted.
+    if (
+        not counts_read(reads)
+        and hold_by_default(contents, universe.vocabulary)
+        and all(axiom.holds_by_default for axiom in ground_axioms(universe))
+    ):
+        return True
+    return JointAlphabet(universe, contents).can_be_read((1,) * len(contents))
+
+
+def harmless_classes(machine: MealyMonitor) -> frozenset[int]:
+    """The letter classes that are accepted in every state from which the rule can be kept.
+
+    Such states include those reached by an accepted letter, where the trace may end.
+    """
+    kept = {
+        target
+        for row, verdicts in zip(machine.successors, machine.outputs, strict=True)
+        for target, verdict in zip(row, verdicts, strict=True)
+        if verdict
+    }
+    kept |= {state for state, verdicts in enumerate(machine.outputs) if any(verdicts)}
+    n_before = 0
+    while len(kept) > n_before:
+        n_before = len(kept)
+        kept |= {state for state, row in enumerate(machine.successors) if not kept.isdisjoint(row)}
+    classes = range(len(machine.outputs[0]))
+    return frozenset(
+        symbol for symbol in classes if all(machine.outputs[state][symbol] for state in kept)
+    )

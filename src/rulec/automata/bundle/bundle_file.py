@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+import shlex
 from codecs import BOM_UTF8
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +15,12 @@ import msgspec
 
 from rulec.automata.bundle import bundle_schema as schema
 from rulec.automata.bundle.bundle_check import rulebook_of
-from rulec.automata.bundle.bundle_digest import (
-    changed,
-    check_digest,
-    has_digest,
-    with_digest,
-    without_digest,
+from rulec.automata.bundle.bundle_messages import (
+    CHANGED_BUNDLE,
+    DAMAGED_BUNDLE,
+    NO_DIGEST,
+    other_day,
 )
-from rulec.automata.bundle.bundle_messages import DAMAGED_BUNDLE, other_day
 from rulec.automata.bundle.clocked_entries import clocked_entry
 from rulec.automata.bundle.compiled_rulebook import (
     CompiledAxiom,
@@ -271,3 +271,59 @@ def _with_sources(hoa: str, rulebook: CompiledRulebook) -> str:
 def _spelt(name: str) -> str:
     """A file name without characters that could end a comment or a line."""
     return "".join(sign if sign.isalnum() or sign in "._-" else "_" for sign in name)
+
+
+_BEFORE, _AFTER = b'{\n "sha256": "', b'",\n'
+_DIGITS = 64
+
+
+def with_digest(text: str) -> str:
+    """The text of a file, an indented JSON object, with a digest added as its first field."""
+    rest = text.removeprefix("{\n").encode()
+    return b"".join((_BEFORE, _digest(rest), _AFTER, rest)).decode()
+
+
+def _digest(rest: bytes | memoryview) -> bytes:
+    return sha256(rest).hexdigest().encode()
+
+
+def has_digest(data: bytes) -> bool:
+    """Whether a file begins like one with a digest."""
+    return data.startswith(_BEFORE)
+
+
+def check_digest(data: bytes, file: str) -> None:
+    """Raise R0410 if a file with a digest has been changed since it was written."""
+    end = len(_BEFORE) + _DIGITS
+    stated, rest = data[len(_BEFORE) : end], memoryview(data)[end + len(_AFTER) :]
+    digest = _digest(rest)
+    if stated == digest and data[end : end + len(_AFTER)] == _AFTER:
+        return
+    raise changed(
+        file,
+        f"this compiled rulebook has been changed: the SHA-256 of all that follows its second "
+        f"line is {digest[:12].decode()}…, but that line has another one",
+    )
+
+
+def changed(file: str, message: str) -> RulecError:
+    """R0410, with the command that writes the file again."""
+    return CHANGED_BUNDLE.error(SourceLocation(file, 2), message, help=_way_out(file))
+
+
+def without_digest(file: str, version: int, steps: Iterable[str]) -> RulecError:
+    """R0411 for a file of an earlier version, with the command that writes it again."""
+    return NO_DIGEST.error(
+        SourceLocation(file),
+        f"this compiled rulebook is of version {version}, which has no digest, so changes to it "
+        "would go unnoticed",
+        help=_way_out(file, steps),
+    )
+
+
+def _way_out(file: str, steps: Iterable[str] = ()) -> str:
+    path = Path(file)
+    # A damaged file does not say reliably which rulebook it was, and its own name may differ.
+    words = ["rulec", "compile", "RULEBOOK", *(word for step in steps for word in ("--step", step))]
+    command = shlex.join([*words, "-o", str(path.parent)])
+    return f"compile it again from its source, a name or a path: `{command}`"

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import os
 
-from rulec.automata.worker.choice_messages import NO_COMPILER
 from rulec.diagnostics import did_you_mean
+from rulec.diagnostics.code import Code
+
+NO_COMPILER = Code("R0416")
 
 VARIABLE = "RULEC_COMPILER"
 SPOT, DIAGRAMS = "spot", "diagrams"

@@ -7,15 +7,20 @@ in a state form one letter. The product is built lazily: nodes and letters are c
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence, Set
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.monitoring.bindings import types_of
-from rulec.monitoring.online.encoding.encoded_values import Breakpoints, breakpoints_of
+from rulec.monitoring.online.encoding.encoded_values import (
+    MISSING,
+    UNKNOWN_DIGIT,
+    Breakpoints,
+    breakpoints_of,
+    digit_table,
+)
 from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import ClassSet, RunningVerdict
-from rulec.monitoring.online.group_reads import GroupReads
 from rulec.monitoring.online.prepared_rule import (
     BY_STATE,
     PossibleClasses,
@@ -23,6 +28,10 @@ from rulec.monitoring.online.prepared_rule import (
     prepared_rule,
 )
 from rulec.monitoring.online.rule_steps import Edge
+from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
+from rulec.trace.remembered import Remembered
+from rulec.vocabulary import Enumeration
+from rulec.vocabulary.partial_values import UNKNOWN
 
 MOST_CACHED = 1 << 18
 """How many nodes, letters and transitions are kept before all are discarded."""
@@ -186,3 +195,51 @@ def rule_groups(
         groups = tuple([GroupReads(members, breakpoints) for members in by_types.values()])
         known[rules] = KnownReads(rules, breakpoints, groups)
     return RuleGroups(known[rules], lacks_hard=lacks_hard)
+
+
+class GroupReads:
+    """The reads of ``rules`` whose variables have the same ``types``, in the same order.
+
+    ``sources`` are what they read.
+    """
+
+    def __init__(self, rules: Sequence[PreparedRule], breakpoints: Breakpoints) -> None:
+        self.rules = tuple(rules)
+        self.types = types_of(rules[0].rule)
+        self.sources = tuple(dict.fromkeys([own for rule in rules for own in rule.sources]))
+        declarations = rules[0].vocabulary.declarations
+        declared = [declarations.get(source.name or "") for source in self.sources]
+        self._allowed = [
+            (place, frozenset([*own.values, MISSING, UNKNOWN]))
+            for place, own in enumerate(declared)
+            if isinstance(own, Enumeration)
+        ]
+        self._tables: list[tuple[int, Remembered[Any, int]]] = []
+        self._picks = []
+        at: dict[object, int] = {source: place for place, source in enumerate(self.sources)}
+        for rule in rules:
+            places = []
+            for read, source in rule.alone:
+                key = source if source.name is None else (read.kind, source)
+                if key not in at:
+                    at[key] = len(at)
+                    table = digit_table(read, breakpoints.get(source.name or ""))
+                    self._tables.append((at[source], table))
+                places.append(at[key])
+            self._picks.append(values_at([*places, *[at[source] for source in rule.values]]))
+
+    def classes(self, encoded: Sequence[Any]) -> list[PossibleClasses]:
+        """The classes that each rule may read, for these encoded values of the ``sources``.
+
+        Raises LookupError or TypeError if a value is missing or invalid, or if no such state is
+        possible.
+        """
+        for place, allowed in self._allowed:
+            if encoded[place] not in allowed:
+                raise LookupError
+        known = [UNKNOWN_DIGIT if value is UNKNOWN else value for value in encoded]
+        known += [table[known[place]] for place, table in self._tables]
+        return [
+            rule.possible_classes(pick(known))
+            for rule, pick in zip(self.rules, self._picks, strict=True)
+        ]
