@@ -10,7 +10,7 @@ import rulec
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from rulec.scoring.maneuver_trajectories import trajectory_scores
-from rulec.scoring.sampled_ways import sampled_ways
+from rulec.scoring.sampled_ways import recorded_way, sampled_ways
 from support.builders.recordings import SAMPLES, recording, straight, vehicle
 
 STEP_S = 0.5
@@ -200,6 +200,21 @@ def test_another_way_may_be_lawful_where_the_cheapest_is_not():
     assert not scores.lawful_as_driven
     assert scores.lawful
     assert scores.n_tried == len({listed[0].nodes, *scores.sampled})
+
+
+def test_what_ego_was_recorded_to_do_is_among_the_ways():
+    found = rulec.find_maneuvers(rulec.load_scenario(FOLLOWING, rulec.Choice(ego="3")), "de")
+    recorded = rulec.read_recording(FOLLOWING)
+    (ego,) = [one for one in recorded.participants if one.id == "3"]
+    way = recorded_way(found.graph, found.graph.scenario.account.origin)
+    assert len(way.nodes) == len(found.graph.layers)
+    assert way.motion[0, [0, 2]] == pytest.approx((0.0, found.graph.scenario.ego.d), abs=0.05)
+    places = np.array([(ego.states[k].x, ego.states[k].y) for k in range(len(way.times_s))])
+    driven = np.hypot(*np.diff(places, axis=0).T).sum()
+    assert way.motion[-1, 0] == pytest.approx(driven, rel=0.02)
+    assert way.nodes in trajectory_scores(found, []).sampled
+    # Whose track ends before the horizon was not recorded to do anything
+    assert recorded_way(scene(world()).graph, scene(world()).graph.scenario.account.origin) is None
 
 
 def test_sampled_ways_are_drivable_through_their_cells_and_meet_nobody():

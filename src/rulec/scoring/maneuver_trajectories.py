@@ -28,7 +28,7 @@ from rulec.recordings.track import Track, TrackOutlines, TrackStates
 from rulec.scenario.recorded.scene_origin import SceneOrigin
 from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import traces_of
-from rulec.scoring.sampled_ways import sampled_ways
+from rulec.scoring.sampled_ways import recorded_way, sampled_ways
 from rulec.scoring.score import score
 from rulec.scoring.scores import Scores
 from rulec.scoring.scoring_messages import NO_TRAJECTORY
@@ -142,7 +142,9 @@ def _sampled(maneuvers: Maneuvers, n_states: int, likely: Set[str]) -> dict[tupl
     meet some of these rules, which other trajectories keep.
     """
     search = maneuvers.witness_search
-    ways = [] if search is None else sampled_ways(maneuvers.graph, search.others)
+    recorded = recorded_way(maneuvers.graph, _origin(maneuvers))
+    ways = [] if recorded is None else [recorded]
+    ways += [] if search is None else sampled_ways(maneuvers.graph, search.others)
     if not ways:
         return {}
     scores = _scores(maneuvers, [way.at for way in ways], n_states)

@@ -1,8 +1,9 @@
 """Ways that ego may drive in a recorded scene, each with the maneuver that it belongs to.
 
-Steady accelerations, for as long as the scene goes on or for a short while, in ego's place across
-the road, or to the middle of its lane or of a lane beside it. A way is within ego's bounds of
-motion, overlaps no obstacle, and passes through a path of the graph's cells.
+What it was recorded to do, and steady accelerations, for as long as the scene goes on or for a
+short while, in ego's place across the road, or to the middle of its lane or of a lane beside it.
+These are within ego's bounds of motion, overlap no obstacle, and pass through a path of the graph's
+cells.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 from rulec.array_types import Floats
 from rulec.partition.cell_graph import NavigationGraph
 from rulec.partition.motion.others_beside import OthersBeside
+from rulec.scenario.recorded.scene_origin import SceneOrigin
 
 _ACCELERATIONS_MPS2 = (0.0, -0.5, 0.5, -1.0, 1.0, -2.0, -3.0, -5.0)
 _FOR_S = (inf, 2.0)
@@ -31,6 +33,9 @@ _GREATEST_LATERAL = 10 / 3**0.5
 """The greatest acceleration of a way aside with a smooth beginning and end, for 1 m in 1 s."""
 
 _HAIR_M = 1e-6
+
+_AROUND_M = 20.0
+"""Recorded places are looked for this near (m) to how far ego has driven along the road."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,6 +69,29 @@ def sampled_ways(graph: NavigationGraph, others: OthersBeside) -> list[SampledWa
         if nodes is not None:
             found.append(SampledWay(times_s, motion, nodes))
     return found
+
+
+def recorded_way(graph: NavigationGraph, origin: SceneOrigin) -> SampledWay | None:
+    """What ego was recorded to do until the horizon; None if it is not, or not in the cells."""
+    recording, start, line = origin.recording, origin.start, origin.line
+    layers_s = np.array([layer.start_s for layer in graph.layers])
+    last = start.step + ceil(layers_s[-1] / recording.step_s - _HAIR_M)
+    wanted = range(start.step, last + 1)
+    body = next((own for own in recording.participants if own.id == start.participant), None)
+    if body is None or not all(step in body.states for step in wanted):
+        return None
+    states = [body.states[step] for step in wanted]
+    places = np.array([(state.x, state.y) for state in states])
+    driven = np.append(0.0, np.hypot(*np.diff(places, axis=0).T).cumsum())
+    near = np.full(len(places), _AROUND_M)
+    along = line.coordinates_near(places, origin.ego_s + driven, near)
+    if np.isnan(along).any():
+        return None
+    s, (d,) = along[:, 0] - origin.ego_s, origin.lanes.straightened(along).T
+    times_s: Floats = np.arange(len(places), dtype=np.float64) * recording.step_s
+    motion = np.stack((s, np.gradient(s, times_s), d, np.gradient(d, times_s)), axis=1)
+    nodes = _nodes(graph, *(np.interp(layers_s, times_s, own) for own in (s, d)))
+    return None if nodes is None else SampledWay(times_s, motion, nodes)
 
 
 def _motions(graph: NavigationGraph, times_s: Floats) -> list[Floats]:
