@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 from numpy import float64
@@ -46,6 +46,11 @@ _ROUNDING = 1e-6
 _MOST_TESTED = 24
 """Of so many ways it is looked up which rules they meet, which takes longer than their scores."""
 
+_MOST_CHEAPEST = 3
+"""Of so many maneuvers the trajectories are judged if no way is lawful and none is listed."""
+
+_Found = TypeVar("_Found")
+
 _Motion: TypeAlias = Callable[[Floats], Floats]
 """By times (s) a motion: a row each of s, speed along, d, speed across (m, m/s)."""
 
@@ -70,7 +75,7 @@ class TrajectoryScores:
     Violations are those of states ``step_s`` (s) apart, the first one after the scene's beginning;
     the last one is at ``until_s`` (s). ``is_cut`` if the recording ends before the horizon.
     ``sampled`` are the maneuvers of further ways that ego may drive, with whether one of these is
-    lawful.
+    lawful; ``tested`` has some of these, too.
     """
 
     step_s: float
@@ -110,20 +115,23 @@ class TrajectoryScores:
 def trajectory_scores(maneuvers: Maneuvers, listed: Sequence[Maneuver]) -> TrajectoryScores | None:
     """The scores of those maneuvers that have a trajectory; None if there is no world for them.
 
-    And whether further ways that ego may drive are lawful. None, too, if the maneuvers continue a
-    past that is not the recording's. Raises RulecError R0507.
+    And whether further ways that ego may drive are lawful; if none is and nothing is listed, the
+    scores of the cheapest maneuvers. None, too, if the maneuvers continue a past that is not the
+    recording's. Raises RulecError R0507.
     """
-    driven = [maneuver for maneuver in listed if maneuver.trajectory is not None]
     n_states = _scored_states(maneuvers)
     if not n_states or maneuvers.after is not None:
         return None
     step_s = _origin(maneuvers).recording.step_s
+    sampled, tested = _sampled(maneuvers, n_states)
+    if not listed and not any(sampled.values()):
+        listed = maneuvers.cheapest(_MOST_CHEAPEST, perhaps=True)
+    driven = [maneuver for maneuver in listed if maneuver.trajectory is not None]
     of: dict[tuple[int, ...], CandidateScore] = {}
-    tested: dict[tuple[int, ...], TestedRules] = {}
     if driven:
         scores = score_trajectories(maneuvers, driven)
         of = {one.nodes: own for one, own in zip(driven, scores.candidates, strict=True)}
-        tested = {nodes: _tested(candidate, scores.rules) for nodes, candidate in of.items()}
+        tested |= {nodes: _tested(candidate, scores.rules) for nodes, candidate in of.items()}
     until_s = round(n_states * step_s, 6)
     return TrajectoryScores(
         step_s=step_s,
@@ -131,36 +139,43 @@ def trajectory_scores(maneuvers: Maneuvers, listed: Sequence[Maneuver]) -> Traje
         is_cut=until_s < _horizon_s(maneuvers) - step_s,
         of=of,
         tested=tested,
-        sampled=_sampled(maneuvers, n_states, {x for own in tested.values() for x in own.kept}),
+        sampled=sampled,
     )
 
 
-def _sampled(maneuvers: Maneuvers, n_states: int, likely: Set[str]) -> dict[tuple[int, ...], bool]:
+_ByNodes: TypeAlias = dict[tuple[int, ...], _Found]
+
+
+def _sampled(maneuvers: Maneuvers, n_states: int) -> tuple[_ByNodes[bool], _ByNodes[TestedRules]]:
     """The maneuvers of ways that ego may drive, with whether one of a maneuver's is lawful.
 
-    The gentlest are looked at first, and no more than a number of them. It is ``likely`` that they
-    meet some of these rules, which other trajectories keep.
+    The gentlest are looked at first, and no more than a number of them. And of some lawful ones the
+    rules that they meet.
     """
     search = maneuvers.witness_search
     recorded = recorded_way(maneuvers.graph, _origin(maneuvers))
     ways = [] if recorded is None else [recorded]
     ways += [] if search is None else sampled_ways(maneuvers.graph, search.others)
+    found, tested = {way.nodes: False for way in ways}, dict[tuple[int, ...], TestedRules]()
     if not ways:
-        return {}
+        return found, tested
     scores = _scores(maneuvers, [way.at for way in ways], n_states)
     hard = {rule.name for rule in scores.rules.rules if rule.strength == "hard"}
-    found = {way.nodes: False for way in ways}
+    kept: set[str] = set()
     for number in scores.perhaps_allowed.nonzero()[0].tolist()[:_MOST_TESTED]:
-        nodes, traces = ways[number].nodes, scores.traces_of(number)
-        if found[nodes] or not traces:
+        way, traces, doubtful = ways[number], scores.traces_of(number), scores.open_rules[number]
+        if found[way.nodes] or not traces or _met(traces, scores.rules, hard & doubtful):
             continue
-        # Few rules are in doubt, and which others it meets takes longest
-        doubtful = scores.open_rules[number]
-        found[nodes] = not _met(traces, scores.rules, hard & doubtful) and bool(
-            _met(traces, scores.rules, likely - doubtful)
-            or _tested(scores.candidates[number], scores.rules).kept
-        )
-    return found
+        # Most meet what an earlier one met: to look up all rules takes longest
+        if not _met(traces, scores.rules, kept - doubtful):
+            (alone,) = _scores(maneuvers, [way.at], n_states).candidates
+            own = _tested(alone, scores.rules)
+            if not own.kept:
+                continue
+            tested[way.nodes] = own
+            kept.update(own.kept)
+        found[way.nodes] = True
+    return found, tested
 
 
 def _may_be_lawful(score: CandidateScore) -> bool:

@@ -50,7 +50,8 @@ class ManeuverAnswers:
     does not list them already. ``chances`` and ``verdicts`` map a maneuver's nodes to its
     probabilities and its verdict; the latter only if some values are unknown. ``judged`` are the
     names of the rules that can be judged from the words of cells; None if cells have no words.
-    ``driven`` are the scores of the trajectories of all maneuvers shown, or of a few if none is.
+    ``driven`` are the scores of the trajectories of all maneuvers shown, and of further ways that
+    ego may drive, and ``lawful`` the number of those tried that are lawful, but not free.
     """
 
     judged: Sequence[str] | None = None
@@ -63,14 +64,7 @@ class ManeuverAnswers:
     verdicts: Mapping[tuple[int, ...], Verdict] = field(default_factory=dict)
     worlds: Sequence[AlternativeCounts] | None = None
     driven: TrajectoryScores | None = None
-
-    @property
-    def lawful(self) -> int:
-        """How many of the maneuvers tried are lawful, but not free."""
-        if self.driven is None:
-            return 0
-        sure = {nodes for nodes, verdict in self.verdicts.items() if verdict.satisfied}
-        return len(self.driven.lawful - sure)
+    lawful: int = 0
 
 
 def horizon_s(graph: NavigationGraph) -> float:

@@ -31,9 +31,6 @@ from rulec.recordings.recording_inputs import InputFiles, input_files
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import page_width, print_remark
 
-_N_TRIED = 3
-"""Of so many maneuvers of a recorded scene the trajectories are judged, if none is shown."""
-
 
 @dataclass(frozen=True, slots=True)
 class ManeuverQuestions:
@@ -74,9 +71,7 @@ class ManeuverQuestions:
                 best = maneuvers.best()
         ranked = None if self.n_ranked is None else maneuvers.ranked(self.n_ranked)
         shown = [*(listed or ()), *(rank.maneuver for rank in (*(best or ()), *(ranked or ())))]
-        tried = shown or (maneuvers.cheapest(_N_TRIED, perhaps=True) if maneuvers.words else [])
-        # Which of those tried are free, if any is
-        judged_whole = tried if listed is None and maneuvers.satisfying else listed or ()
+        driven = _driven(maneuvers, shown)
         uncertain = any(obstacle.alternatives for obstacle in maneuvers.graph.scenario.obstacles)
         uncertain = uncertain or (self.worlds and form == "json")
         classes = None
@@ -91,13 +86,14 @@ class ManeuverQuestions:
             best=best,
             ranked=ranked,
             chances=_chances(maneuvers, shown) if uncertain else {},
-            verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in judged_whole}
+            verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or ()}
             if maneuvers.in_doubt
             else {},
             worlds=lazy.alternative_counts(maneuvers) if self.worlds else None,
             prunings=maneuvers.prunings() if self.why else None,
             classes=classes,
-            driven=_driven(maneuvers, tried),
+            driven=driven,
+            lawful=0 if driven is None else sum(_is_open(maneuvers, x) for x in driven.lawful),
         )
 
 
@@ -221,6 +217,13 @@ def _driven(
     except rulec.RulecError as error:
         print_diagnostics(error.diagnostics)
         return None
+
+
+def _is_open(maneuvers: lazy.Maneuvers, nodes: tuple[int, ...]) -> bool:
+    """Whether a maneuver, of which a trajectory is lawful, is not free."""
+    if not maneuvers.satisfying:
+        return True
+    return not maneuvers.verdict(lazy.Maneuver(nodes, 0.0, None)).satisfied
 
 
 def _chances(
