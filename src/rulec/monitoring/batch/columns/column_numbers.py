@@ -64,7 +64,7 @@ Bounds = tuple[Fraction, Array | float, Array | float, Mask | None]
 
 
 def numbers_between(ready: ThresholdScale, bounds: Iterable[Bounds], n_states: int) -> Numbers:
-    """The numbers, as in ``meanings_of``, of a sum whose terms have known bounds."""
+    """The numbers, as in ``StackedRead.meanings``, of a sum whose terms have known bounds."""
     lows: list[Summand] = []
     highs: list[Summand] = []
     unknown: Mask | None = None

@@ -17,7 +17,7 @@ from rulec.monitoring.batch.stacked.crowded_states import CrowdedStates, suppose
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
-from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
+from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Columns, Numbers
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.trace import Value
@@ -51,7 +51,7 @@ def entangled_letters(
     rule: StackedRule,
     reader: StackReader,
     about: tuple[Spots, Flags],
-    numbers: Sequence[Numbers],
+    numbers: Columns,
     supposed: Mapping[Subject, Value],
     *,
     crowd: CrowdedStates,

@@ -23,7 +23,7 @@ from rulec.monitoring.batch.columns.column_numbers import (
 )
 from rulec.monitoring.batch.stacked.met_values import KLEENE_COLUMNS, UNKNOWN, MetValues
 from rulec.monitoring.batch.stacked.stack import Stack, StackColumn, either
-from rulec.monitoring.batch.stacked.stacked_rule import StackedRead
+from rulec.monitoring.batch.stacked.stacked_read import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.trace_columns import Array, smallest_unsigned

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,6 @@ from rulec.monitoring.batch.stacked.instances import (
     doubtful_instances,
     with_all_of,
 )
-from rulec.monitoring.batch.stacked.read_numbers import number_of_value
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import FEW_WORDS, StackedRule, stretches
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
@@ -32,37 +31,65 @@ from rulec.trace.plain_arrays import ODD, ranges
 from rulec.vocabulary.partial_values import UNKNOWN
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class StackedWords:
-    """The words of some choices of objects: one for each way to choose unknown constants.
+class WordLetters(NamedTuple):
+    """The letters of some words, if unknown constants have the ``supposed`` values.
 
-    ``numbers`` are those of the reads and ``letters`` those of the letter sets, both at the
-    ``spots``; words begin and end at ``bounds``. Where letters are ``entangled``, the numbers of
-    the reads do not determine them; where they are ``odd``, they are invalid.
+    ``numbers`` are those of the reads and ``letters`` those of the letter sets. Where letters are
+    ``entangled``, the numbers of the reads do not determine them.
     """
 
-    rule: StackedRule
+    supposed: Mapping[Subject, Value]
+    numbers: Mapping[int, Numbers]
+    letters: NDArray[np.intp]
+    entangled: EntangledLetters | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ChosenWords:
+    """The words of some choices of objects, of which the same constants are ``unknown``.
+
+    Words begin and end at ``bounds`` of the ``spots``. ``supposed`` are the values that constants
+    may have together, and each of them can be if that ``is_exact``.
+    """
+
     instances: Instances
     bounds: NDArray[np.intp]
     spots: Spots
-    supposed: Sequence[Mapping[Subject, Value]]
-    is_exact: bool
-    numbers: Sequence[Sequence[Numbers]]
-    letters: Sequence[NDArray[np.intp]]
-    entangled: Sequence[EntangledLetters | None]
-    odd: NDArray[np.bool_]
+    numbers: NumbersAt
+    unknown: Sequence[int] = ()
+    supposed: Sequence[Mapping[Subject, Value]] = ({},)
+    is_exact: bool = True
+
+    @staticmethod
+    def of(rule: StackedRule, reader: StackReader, instances: Instances) -> ChosenWords:
+        """The words of some choices, with no supposed values."""
+        bounds, spots = instances.spots(rule, reader.stack)
+        return ChosenWords(instances, bounds, spots, NumbersAt(rule, reader, spots))
+
+    def part(
+        self, rule: StackedRule, reader: StackReader, members: NDArray[np.intp]
+    ) -> ChosenWords:
+        """Some of the words."""
+        if len(members) == len(self.instances.traces):
+            return self
+        instances = self.instances.part(members)
+        bounds, spots = instances.spots(rule, reader.stack)
+        at, _ = ranges(self.bounds[members], bounds[1:] - bounds[:-1])
+        numbers = self.numbers.part(spots, at)
+        return replace(self, instances=instances, bounds=bounds, spots=spots, numbers=numbers)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StackedOutcomes:
-    """The choices that are not kept, as places among the ``words``.
+    """The answers for words that are not kept, by their places; None for those that are odd.
 
-    There are no answers where the words are odd.
+    ``letters`` are those for each way to suppose unknown constants.
     """
 
-    words: StackedWords
-    places: Sequence[int]
-    answers: Sequence[Answer | None]
+    rule: StackedRule
+    words: ChosenWords
+    letters: Sequence[WordLetters]
+    answers: Mapping[int, Answer | None]
 
 
 def outcomes(
@@ -82,36 +109,28 @@ def outcomes(
     if not len(instances.traces):
         return
     for chosen in _by_unknown_constants(rule, reader, instances, rulebook):
-        alternatives = _letters_apart(rule, reader, chosen)
-        known = [_answers(rule, letters, chosen.bounds) for *_, letters in alternatives]
+        apart = _letters_apart(rule, reader, chosen)
+        known = [_answers(rule, own.letters, chosen.bounds) for own in apart]
         doubtful = suspects[chosen.instances.traces]
-        for own in known:
-            doubtful |= [answer is None or answer.worst != KEPT for answer in own]
+        for answers in known:
+            doubtful |= [answer is None or answer.worst != KEPT for answer in answers]
         if not doubtful.any():
             continue
         if not doubtful.all():
             members = doubtful.nonzero()[0]
             chosen = chosen.part(rule, reader, members)
-            alternatives = _letters_apart(rule, reader, chosen)
-            known = [[own[member] for member in members.tolist()] for own in known]
-        words = _letters_together(rule, reader, chosen, alternatives)
-        answers = [
-            own if letters is before else _answers(rule, letters, words.bounds)
-            for own, letters, (*_, before) in zip(known, words.letters, alternatives, strict=True)
-        ]
-        yield _outcomes_of(words, answers)
-
-
-def _outcomes_of(
-    words: StackedWords, answers: Sequence[Sequence[Answer | None]]
-) -> StackedOutcomes:
-    """The outcomes of words, from the answers for all alternatives."""
-    are_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1]).tolist()
-    combined = answers[0] if len(answers) == 1 else list(map(_combined, zip(*answers, strict=True)))
-    # Letters that axioms exclude make a word odd
-    found = [None if is_odd else own for is_odd, own in zip(are_odd, combined, strict=True)]
-    places = [n for n, own in enumerate(found) if own is None or own.worst != KEPT]
-    return StackedOutcomes(words, places, [found[place] for place in places])
+            apart = _letters_apart(rule, reader, chosen)
+            known = [[answers[member] for member in members.tolist()] for answers in known]
+        together, odd = _letters_together(rule, reader, chosen, apart)
+        for place, (own, before) in enumerate(zip(together, apart, strict=True)):
+            if own.letters is not before.letters:
+                known[place] = _answers(rule, own.letters, chosen.bounds)
+        # Letters that axioms exclude make a word odd
+        are_odd = np.logical_or.reduceat(odd, chosen.bounds[:-1]).tolist()
+        joint = known[0] if len(known) == 1 else map(_combined, zip(*known, strict=True))
+        found = [None if is_odd else own for is_odd, own in zip(are_odd, joint, strict=True)]
+        kept_not = {n: own for n, own in enumerate(found) if own is None or own.worst != KEPT}
+        yield StackedOutcomes(rule, chosen, together, kept_not)
 
 
 def _answers(
@@ -176,43 +195,11 @@ def _alike(flags: NDArray[np.bool_]) -> Iterator[tuple[NDArray[np.intp], list[in
         yield (kinds.ravel() == kind).nonzero()[0], row.nonzero()[0].tolist()
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Chosen:
-    """Choices of objects with the same unknown constants, which may be supposed to have values.
-
-    ``bounds``, ``spots`` and ``numbers`` are as in ``StackedWords``, except at unknown constants.
-    """
-
-    instances: Instances
-    bounds: NDArray[np.intp]
-    spots: Spots
-    numbers: NumbersAt
-    unknown: Sequence[int] = ()
-    supposed: Sequence[Mapping[Subject, Value]] = ({},)
-    is_exact: bool = True
-
-    @staticmethod
-    def of(rule: StackedRule, reader: StackReader, instances: Instances) -> _Chosen:
-        """Some choices, with no supposed values."""
-        bounds, spots = instances.spots(rule, reader.stack)
-        return _Chosen(instances, bounds, spots, NumbersAt(rule, reader, spots))
-
-    def part(self, rule: StackedRule, reader: StackReader, members: NDArray[np.intp]) -> _Chosen:
-        """Some of the choices."""
-        if len(members) == len(self.instances.traces):
-            return self
-        instances = self.instances.part(members)
-        bounds, spots = instances.spots(rule, reader.stack)
-        at, _ = ranges(self.bounds[members], bounds[1:] - bounds[:-1])
-        numbers = self.numbers.part(spots, at)
-        return replace(self, instances=instances, bounds=bounds, spots=spots, numbers=numbers)
-
-
 def _by_unknown_constants(
     rule: StackedRule, reader: StackReader, instances: Instances, rulebook: CompiledRulebook
-) -> Iterator[_Chosen]:
+) -> Iterator[ChosenWords]:
     """The choices, grouped by which constants are unknown."""
-    chosen = _Chosen.of(rule, reader, instances)
+    chosen = ChosenWords.of(rule, reader, instances)
     constants = rule.constants
     if not constants:
         yield chosen
@@ -228,58 +215,50 @@ def _by_unknown_constants(
         yield replace(own_part, unknown=which, supposed=supposed, is_exact=is_exact)
 
 
-_Letters: TypeAlias = tuple[Mapping[Subject, Value], Sequence[Numbers], NDArray[np.intp]]
-"""The supposed values, and the numbers of reads and of letters."""
-
-
-def _letters_apart(rule: StackedRule, reader: StackReader, chosen: _Chosen) -> Sequence[_Letters]:
+def _letters_apart(
+    rule: StackedRule, reader: StackReader, chosen: ChosenWords
+) -> Sequence[WordLetters]:
     """The letters for all supposed values, from what each read allows by itself."""
-    alternatives = []
+    declarations = reader.stack.vocabulary.declarations
+    found = []
     for values in chosen.supposed:
         instead = {}
         for place in chosen.unknown:
             value = values.get(rule.subject(place))
             if value is not None:
-                read = rule.reads[place].read
-                instead[place] = number_of_value(read, value, reader.stack.vocabulary)[1]
-        own: Sequence[Numbers] = chosen.numbers
-        if instead:
-            own = [instead.get(n, x) for n, x in enumerate(own)]
-        if instead or chosen.instances.letters is None:
-            letters = rule.letters.letters_of(own)
-        else:
-            letters = chosen.instances.letters
-            if isinstance(letters, np.ndarray):
-                letters = letters.take(chosen.spots.states)
+                instead[place] = rule.reads[place].number_of(value, declarations)
+        numbers = chosen.numbers.with_others(instead) if instead else chosen.numbers
+        letters = chosen.instances.letters
+        if instead or letters is None:
+            letters = rule.letters.letters_of(numbers)
+        elif isinstance(letters, np.ndarray):
+            letters = letters.take(chosen.spots.states)
         if not isinstance(letters, np.ndarray):
             letters = np.full(len(chosen.spots.states), letters, dtype=np.intp)
-        alternatives.append((values, own, letters))
-    return alternatives
+        found.append(WordLetters(values, numbers, letters))
+    return found
 
 
 def _letters_together(
-    rule: StackedRule,
-    reader: StackReader,
-    chosen: _Chosen,
-    alternatives: Sequence[_Letters],
-) -> StackedWords:
-    """The words of choices, with the letters that their reads allow together."""
-    spots = chosen.spots
-    odd = _hides_constants(rule, reader, spots)
+    rule: StackedRule, reader: StackReader, chosen: ChosenWords, apart: Sequence[WordLetters]
+) -> tuple[Sequence[WordLetters], Flags]:
+    """The letters that reads allow together, and where they are odd."""
+    odd = _hides_constants(rule, reader, chosen.spots)
     if len(chosen.unknown) > 1 and not any(chosen.supposed):
         odd[:] = True
-    every_letters: list[NDArray[np.intp]] = []
-    every_entangled: list[EntangledLetters | None] = []
+    found: list[WordLetters] = []
     crowd: CrowdedStates | None = None
-    for values, numbers, letters in alternatives:
-        entangled = None
+    for own in apart:
+        entangled, letters = None, own.letters
         if rule.related and not odd.all():
-            partial = np.zeros(len(spots.states), dtype=bool)
-            partial |= rule.letters.are_partial(numbers, rule.related)
+            partial = np.zeros(len(letters), dtype=bool)
+            partial |= rule.letters.are_partial(own.numbers, rule.related)
             if partial.any():
-                about = spots, partial
+                about = chosen.spots, partial
                 crowd = crowd or CrowdedStates(rule, reader)
-                entangled = entangled_letters(rule, reader, about, numbers, values, crowd=crowd)
+                entangled = entangled_letters(
+                    rule, reader, about, own.numbers, own.supposed, crowd=crowd
+                )
                 if entangled is None:
                     odd |= partial
                 else:
@@ -289,20 +268,8 @@ def _letters_together(
         if rule.facts:
             for nothing in rule.letters.numbers_of_none:
                 odd |= letters == nothing
-        every_entangled.append(entangled)
-        every_letters.append(letters)
-    return StackedWords(
-        rule,
-        chosen.instances,
-        bounds=chosen.bounds,
-        spots=spots,
-        supposed=chosen.supposed,
-        is_exact=chosen.is_exact,
-        numbers=[numbers for _, numbers, _ in alternatives],
-        letters=every_letters,
-        entangled=every_entangled,
-        odd=odd,
-    )
+        found.append(own._replace(letters=letters, entangled=entangled))
+    return found, odd
 
 
 def _hides_constants(rule: StackedRule, reader: StackReader, spots: Spots) -> NDArray[np.bool_]:

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.automata.thresholds import ThresholdScale, scale
+from rulec.automata.mealy_monitor import Read
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_of
 from rulec.logic.kleene import holds
-from rulec.monitoring.batch.stacked.read_numbers import meanings_of
+from rulec.monitoring.batch.stacked.stacked_read import ReadKeys, StackedRead, stacked_read
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
@@ -34,13 +31,9 @@ from rulec.trace import Value
 from rulec.trace.plain_arrays import different_pairs
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
-from rulec.vocabulary.vocabulary_model import values_of
 
 NOBODY = NothingKnown({}, Vocabulary("", {}, {}))
 """A state in which nothing is known about any object."""
-
-ReadKeys: TypeAlias = dict[object, int]
-"""Numbers of reads by what makes them equal, shared by all rules that are judged together."""
 
 MOST_SETS = 1 << 14
 """How many letter sets are kept before all are discarded."""
@@ -54,54 +47,6 @@ FEW_WORDS = 1 << 5
 _MOST_BITS = 63
 _NO_CLASS = 1 << _MOST_BITS
 """A bit, beside those of the letter classes, for impossible letters."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class StackedRead:
-    """A read, and the digits, as bits, that its numbers stand for; ``unknown`` means any digit.
-
-    ``variables`` are the rule's variables that it is asked about, ``names`` what it depends on.
-    ``count`` is the counted condition, if it is a count: of objects that any variable may stand for
-    or, if it ``counts_itself``, of only the object that its one variable stands for. Reads with the
-    same ``key`` have the same numbers; those with the same ``digits_key`` also the same digits.
-    ``ready`` are the thresholds of a number. A read that ``is_composed`` depends on several values
-    of an object: it is a sum, or counts itself. ``of_counts`` caches the digits of a count by the
-    values of its ``names`` anywhere, as bits; ``of_met`` those of a signal by its own values.
-    """
-
-    read: Read | NumberRead
-    variables: tuple[str, ...]
-    names: tuple[str, ...]
-    meanings: tuple[int, ...]
-    unknown: int
-    count: ltl.Count | None
-    ready: ThresholdScale | None
-    key: int
-    digits_key: int
-    is_composed: bool
-    of_counts: dict[tuple[int | None, ...], int] = field(default_factory=dict, init=False)
-    of_met: dict[int, int] = field(default_factory=dict, init=False)
-
-    @property
-    def every(self) -> int:
-        """All digits."""
-        return (1 << self.read.size) - 1
-
-    def of_values(self, met: int) -> int:
-        """The digits of some values of a signal, both as bits."""
-        known = self.of_met.get(met)
-        if known is None:
-            known = 0
-            for number in range(met.bit_length()):
-                if met >> number & 1:
-                    known |= self.meanings[number]
-            self.of_met[met] = known
-        return known
-
-    @property
-    def counts_itself(self) -> bool:
-        """Whether only the object that it is asked about can count."""
-        return self.count is not None and bool(self.variables)
 
 
 class StackedRule:
@@ -127,7 +72,7 @@ class StackedRule:
         self.machine = machine
         self.variables = tuple([variable.name for variable in rule.variables])
         self.types = tuple([variable.type for variable in rule.variables])
-        self.reads = tuple([_stacked(read, vocabulary, keys) for read in rule.machine.reads])
+        self.reads = tuple([stacked_read(read, vocabulary, keys) for read in rule.machine.reads])
         read_names = frozenset(name for read in self.reads for name in read.names)
         self.facts = related_facts(read_names, rulebook.axioms)
         self.in_facts = frozenset().union(*[names_of(fact.formula) for fact in self.facts])
@@ -140,14 +85,14 @@ class StackedRule:
         )
         constants = frozenset(vocabulary.constants)
         self.constants = tuple(
-            [n for n, x in enumerate(self.reads) if _is_value(x) and x.names[0] in constants]
+            [n for n, x in enumerate(self.reads) if x.is_value and x.names[0] in constants]
         )
         self.hidden = tuple(
             dict.fromkeys(
                 name
                 for read in self.reads
                 for name in read.names
-                if name in constants and not _is_value(read)
+                if name in constants and not read.is_value
             )
         )
         self.counts_everywhere = any(read.count and not read.variables for read in self.reads)
@@ -319,36 +264,6 @@ def stretches(
     return rows, starts.searchsorted(bounds).tolist()
 
 
-def _stacked(read: Read | NumberRead, vocabulary: Vocabulary, keys: ReadKeys) -> StackedRead:
-    meanings = tuple(meanings_of(read, vocabulary))
-    count: ltl.Count | None = None
-    key: object
-    names: tuple[str, ...]
-    if isinstance(read, Read):
-        unknown = len(values_of(vocabulary.declarations[read.name]))
-        ready, variables, names = None, read.variables, (read.name,)
-        key = read.name, len(read.variables)
-    else:
-        unknown, ready = read.size - 1, scale(read)
-        variables, names = tuple(dict.fromkeys(ready.variables)), ready.names
-        term = ready.quantity
-        key = id(read) if term is None else (term.name, len(term.arguments), ready.floors)
-        counts = [term for _, term in read.terms if isinstance(term, ltl.Count)]
-        count = counts[0] if len(read.terms) == 1 and counts else None
-    return StackedRead(
-        read,
-        variables,
-        names,
-        meanings=meanings,
-        unknown=unknown,
-        count=count,
-        ready=ready,
-        key=keys.setdefault(key, len(keys)),
-        digits_key=keys.setdefault((key, meanings), len(keys)),
-        is_composed=bool(variables) and ready is not None and ready.quantity is None,
-    )
-
-
 def _related(reads: Sequence[StackedRead], in_facts: frozenset[str]) -> tuple[int, ...]:
     """Reads that are counts, or share names with other reads or with axioms."""
     return tuple(
@@ -364,7 +279,7 @@ def _is_simple(rule: StackedRule, vocabulary: Vocabulary) -> bool:
     """Whether all of the rule's reads are of kinds that can be read from arrays."""
     names = (name for name in rule.names if name in vocabulary.declarations)
     arity = max([len(vocabulary.declarations[name].parameters) for name in names], default=0)
-    is_among_two = arity == 2 and not any(read.count or _repeats(read) for read in rule.reads)
+    is_among_two = arity == 2 and not any(read.count or read.repeats for read in rule.reads)
     return (
         len(rule.variables) <= 2
         and (arity < 2 or is_among_two)
@@ -372,22 +287,6 @@ def _is_simple(rule: StackedRule, vocabulary: Vocabulary) -> bool:
         and all(_is_simple_read(read, rule) for read in rule.reads)
         and len({rule.reads[place].names for place in rule.constants}) == len(rule.constants)
     )
-
-
-def _repeats(read: StackedRead) -> bool:
-    """Whether a value is about two objects that are the same one."""
-    own = read.read
-    terms = (
-        [own.variables]
-        if isinstance(own, Read)
-        else [term.arguments for _, term in own.terms if isinstance(term, ltl.QuantityTerm)]
-    )
-    return any(len(set(variables)) < len(variables) for variables in terms)
-
-
-def _is_value(read: StackedRead) -> bool:
-    """Whether a read is a single value, not a sum or a count."""
-    return isinstance(read.read, Read) or scale(read.read).quantity is not None
 
 
 def _is_simple_read(read: StackedRead, rule: StackedRule) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -36,11 +36,8 @@ from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
 from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
 from rulec.monitoring.batch.stacked.stacked_outcomes import StackedOutcomes, outcomes
-from rulec.monitoring.batch.stacked.stacked_rule import (
-    ReadKeys,
-    StackedRead,
-    StackedRule,
-)
+from rulec.monitoring.batch.stacked.stacked_read import ReadKeys, StackedRead
+from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.implied_values import with_defined_words
 from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
@@ -72,43 +69,40 @@ class StackedRun:
 
     def __init__(self, traces: JoinedTraces, rulebook: CompiledRulebook) -> None:
         self._rulebook = rules = rulebook.fitted_to(traces.kind.step_s)
-        self._n_traces = n_traces = len(traces.lengths)
-        self._is_derived = traces.derived
+        self._traces, self._n_traces = traces, len(traces.lengths)
         self._ready = _ready_for(traces.kind, rules)
         _check_objects(traces, rules.vocabulary)
-        judged = self._ready.judged
-        self._stack = Stack(traces, judged.vocabulary, self._ready.defaults)
+        self._stack = Stack(traces, self._ready.judged.vocabulary, self._ready.defaults)
         self._reader = StackReader(self._stack)
+        self._reasons = StackedReasons(self._reader)
         self._close = _CloseLooks(traces.trace, rules)
         self._simple = self._ready.simple_rules(frozenset(self._stack.untold(self._ready.names)))
-        whole: set[int] = set()
-        if traces.kind.is_whole:
-            whole = {*range(n_traces)} - self._stack.partial_traces()
-        lacking = _LackingRules(self._ready, self._simple, self._reader, rules, self._close)
-        self._findings = Findings(
-            judged, n_traces, traces.names, frozenset(whole), lacking.doubtful
-        )
-        self._reasons = StackedReasons(self._reader)
         self._odd: set[int] = set()
 
     def judged(self) -> list[JudgedTrace | None]:
         """The traces with their findings; None for those that must be judged by their states."""
-        simple, busy = self._simple, self._simple.busy(self._reader)
-        suspects = self._suspects(contradicted(simple.facts, self._reader))
+        judged, every = self._ready.judged, range(self._n_traces)
+        whole: set[int] = set()
+        if self._traces.kind.is_whole:
+            whole = {*every} - self._stack.partial_traces()
+        # Nothing here refers to the findings, which last as long as what they ask
+        findings = Findings(
+            judged, self._n_traces, self._traces.names, frozenset(whole), self._doubtful
+        )
+        busy = self._simple.busy(self._reader)
+        suspects = self._suspects(contradicted(self._simple.facts, self._reader))
         for number, rule in enumerate(self._ready.rules):
-            if rule.rule.name in self._ready.judged.lacking:
+            if rule.rule.name in judged.lacking:
                 continue
-            if number not in simple.rules:
-                self._add_closely(number, rule)
+            if number not in self._simple.rules:
+                for trace in every:
+                    self._add_closely(findings, trace, number, rule.rule)
             elif number in busy or (rule.facts and suspects.any()):
                 rule.forget_many()
-                for stacked_outcomes in outcomes(rule, self._reader, self._rulebook, suspects):
-                    self._add(number, stacked_outcomes)
+                for found in outcomes(rule, self._reader, self._rulebook, suspects):
+                    self._add(findings, number, found)
         self._odd |= self._stack.odd_traces()
-        return [
-            None if number in self._odd else JudgedTrace(self._findings, number)
-            for number in range(self._n_traces)
-        ]
+        return [None if trace in self._odd else JudgedTrace(findings, trace) for trace in every]
 
     def _suspects(self, contradicted: Set[int]) -> Flags:
         """The traces among these that are examined closely, unless there is too much in them.
@@ -123,57 +117,95 @@ class StackedRun:
         n_objects = np.bincount(stack.trace_of, minlength=self._n_traces)
         n_pairs = n_objects**2 * (stack.begins[1:] - stack.begins[:-1])
         odd: Flags = (n_pairs * suspects).cumsum() > _MOST_EXAMINED
-        odd |= not self._is_derived
+        odd |= not self._traces.derived
         self._odd.update((suspects & odd).nonzero()[0].tolist())
         return suspects & ~odd
 
-    def _add(self, rule_number: int, outcomes: StackedOutcomes) -> None:
-        words, findings = outcomes.words, self._findings
-        rule, instances = words.rule.rule, words.instances
-        answered = zip(outcomes.places, outcomes.answers, strict=True)
-        places = [place for place, answer in answered if answer is not None]
-        chosen = np.array(places, dtype=np.intp)
+    def _add(self, findings: Findings, number: int, found: StackedOutcomes) -> None:
+        """Add what has been found about a rule."""
+        rule, instances = found.rule.rule, found.words.instances
+        answers = {place: own for place, own in found.answers.items() if own is not None}
+        chosen = np.array([*answers], dtype=np.intp)
         traces = instances.traces[chosen]
         findings.add(
             RuleFindings(
-                number=rule_number,
+                number=number,
                 rule=rule,
-                answers=[answer for answer in outcomes.answers if answer is not None],
-                places=places,
+                answers=[*answers.values()],
+                places=[*answers],
                 traces=traces,
                 begins=instances.firsts[chosen] - self._stack.begins[traces],
                 objects=[own[chosen] for own in instances.objects],
                 reasons=Reasons(
-                    partial(self._reasons.of, words), partial(self._reasons.beyond, words)
+                    partial(self._reasons.of, found), partial(self._reasons.beyond, found)
                 ),
             )
         )
-        for place in sorted({*outcomes.places}.difference(places)):
-            about = [int(own[place]) for own in instances.objects]
-            self._add_odd(int(instances.traces[place]), rule, (rule_number, *about))
+        for place in sorted(found.answers.keys() - answers):
+            objects = tuple([int(own[place]) for own in instances.objects])
+            self._add_closely(findings, int(instances.traces[place]), number, rule, objects)
 
-    def _add_odd(self, number: int, rule: CompiledRule, place: Place) -> None:
-        """Add the outcome for a choice of objects that arrays cannot decide."""
-        if number in self._odd:
+    def _add_closely(
+        self,
+        findings: Findings,
+        trace: int,
+        number: int,
+        rule: CompiledRule,
+        chosen: Place | None = None,
+    ) -> None:
+        """Add what states say of a rule that arrays cannot decide, or of one choice of objects."""
+        if trace in self._odd:
             return
-        binding = self._findings.binding(rule, place[1:])
+        found: list[tuple[Place, ViolationOrOpen]] = []
         try:
-            finding = self._close[number].answer(rule.name, binding)
+            if chosen is None:
+                answers = enumerate(self._close[trace].answers(rule.name))
+                found = [((number, place), answer) for place, answer in answers]
+            else:
+                answer = self._close[trace].answer(rule.name, findings.binding(rule, chosen))
+                found = [((number, *chosen), answer)] if answer is not None else []
         except RulecError:
-            self._odd.add(number)
+            self._odd.add(trace)
             return
-        if finding is not None:
-            self._findings.add_single(number, place, finding)
+        for place, finding in found:
+            findings.add_single(trace, place, finding)
 
-    def _add_closely(self, rule_number: int, rule: StackedRule) -> None:
-        for number in range(self._n_traces):
-            try:
-                answers = self._close[number].answers(rule.rule.name)
-            except RulecError:
-                self._odd.add(number)
+    def _doubtful(self) -> tuple[Mapping[int, Set[str]], Sequence[RuleFault]]:
+        """By trace the rules that lack names and that it may not keep; and faults on the way."""
+        doubtful: dict[int, set[str]] = defaultdict(set)
+        faults: list[RuleFault] = []
+        busy = self._simple.busy(self._reader)
+        for number, rule in enumerate(self._ready.rules):
+            name = rule.rule.name
+            if name not in self._ready.judged.lacking:
                 continue
-            for place, answer in enumerate(answers):
-                self._findings.add_single(number, (rule_number, place), answer)
+            try:
+                traces = self._not_surely_kept(number, rule, busy)
+            except Exception as problem:
+                faults.append((rule.rule, fault_of(problem, f"rule {name}")))
+                continue
+            for trace in traces:
+                doubtful[trace].add(name)
+        return doubtful, faults
+
+    def _not_surely_kept(self, number: int, rule: StackedRule, busy: Set[int]) -> set[int]:
+        """The traces in which a rule is not surely kept."""
+        sure: set[int] = set()
+        closely: set[int] = set()
+        every = range(self._n_traces)
+        if number not in self._simple.rules:
+            closely = {*every}
+        elif number in busy:
+            rule.forget_many()
+            nobody = np.zeros(self._n_traces, dtype=bool)
+            try:
+                for found in outcomes(rule, self._reader, self._rulebook, nobody):
+                    traces = found.words.instances.traces
+                    for place, answer in found.answers.items():
+                        (closely if answer is None else sure).add(int(traces[place]))
+            except UnencodableError:
+                closely = {*every}
+        return sure | {x for x in closely - sure if self._close[x].is_doubtful(rule.rule.name)}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -273,100 +305,18 @@ def _ready_rules(kind: TraceKind, rules: CompiledRulebook) -> _ReadyRules:
     return _ReadyRules(judged, ready, names)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _LackingRules:
-    """The rules that lack names, on traces whose other rules have been judged.
-
-    They are looked at once a verdict is asked for; nothing here refers to the findings, which last
-    as long as that.
-    """
-
-    ready: _ReadyRules
-    simple: _SimpleRules
-    reader: StackReader
-    rulebook: CompiledRulebook
-    close: _CloseLooks
-
-    def doubtful(self) -> tuple[Mapping[int, Set[str]], Sequence[RuleFault]]:
-        """By trace the rules that it does not keep whatever these names are; and faults."""
-        doubtful: dict[int, set[str]] = defaultdict(set)
-        faults: list[RuleFault] = []
-        every = range(len(self.reader.stack.begins) - 1)
-        busy = self.simple.busy(self.reader)
-        for number, rule in enumerate(self.ready.rules):
-            name = rule.rule.name
-            if name not in self.ready.judged.lacking:
-                continue
-            try:
-                sure = self._not_surely_kept(number, rule, every, busy)
-            except Exception as problem:
-                faults.append((rule.rule, fault_of(problem, f"rule {name}")))
-                continue
-            for trace in sure:
-                doubtful[trace].add(name)
-        return doubtful, faults
-
-    def _not_surely_kept(
-        self, number: int, rule: StackedRule, every: range, busy: Set[int]
-    ) -> set[int]:
-        if number not in self.simple.rules:
-            sure, closely = set[int](), {*every}
-        elif number in busy:
-            sure, closely = self._doubtful_in(rule, every)
-        else:
-            return set()
-        return sure | {x for x in closely - sure if self.close[x].is_doubtful(rule.rule.name)}
-
-    def _doubtful_in(self, rule: StackedRule, every: range) -> tuple[set[int], set[int]]:
-        """The traces in which a rule is not surely kept, and those of which states decide it."""
-        sure: set[int] = set()
-        closely: set[int] = set()
-        rule.forget_many()
-        try:
-            nobody = np.zeros(len(every), dtype=bool)
-            for found in outcomes(rule, self.reader, self.rulebook, nobody):
-                traces = found.words.instances.traces
-                for place, answer in zip(found.places, found.answers, strict=True):
-                    (closely if answer is None else sure).add(int(traces[place]))
-        except UnencodableError:
-            closely = {*every}
-        return sure, closely
-
-
-class _CloseLooks(dict[int, "_CloseLook"]):
-    """A close look at each trace, by its number, taken once it is needed."""
+class _CloseLooks(dict[int, "UncertainRun"]):
+    """The verdicts on single rules of each trace by its states, begun once they are needed."""
 
     def __init__(self, trace: Callable[[int], Trace], rulebook: CompiledRulebook) -> None:
-        self._of = partial(_CloseLook, rulebook=rulebook)
-        self._trace = trace
+        self._trace, self._rulebook = trace, rulebook
 
-    def __missing__(self, number: int) -> _CloseLook:
-        return self.setdefault(number, self._of(partial(self._trace, number)))
-
-
-class _CloseLook:
-    """Verdicts on single rules of one trace, by its states."""
-
-    def __init__(self, trace: Callable[[], Trace], rulebook: CompiledRulebook) -> None:
-        self._trace = trace
-        self._rulebook = rulebook
-
-    @cached_property
-    def _run(self) -> UncertainRun:
+    def __missing__(self, number: int) -> UncertainRun:
         # Judging by states, 5 ms: only where arrays do not tell.
         from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
-        trace = with_defined_words(self._trace(), self._rulebook.vocabulary)
-        return UncertainRun(trace, self._rulebook)
-
-    def answer(self, rule: str, binding: Mapping[str, str]) -> ViolationOrOpen | None:
-        return self._run.answer(rule, binding)
-
-    def answers(self, rule: str) -> list[ViolationOrOpen]:
-        return list(self._run.answers(rule))
-
-    def is_doubtful(self, rule: str) -> bool:
-        return self._run.is_doubtful(rule)
+        trace = with_defined_words(self._trace(number), self._rulebook.vocabulary)
+        return self.setdefault(number, UncertainRun(trace, self._rulebook))
 
 
 def _check_objects(traces: JoinedTraces, vocabulary: Vocabulary) -> None:
