@@ -13,9 +13,9 @@ from rulec.array_types import Flags
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import reads_in
+from rulec.monitoring.batch.stacked.chosen_words import StackedOutcomes
 from rulec.monitoring.batch.stacked.entangled_letters import digits_at
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
-from rulec.monitoring.batch.stacked.stacked_outcomes import StackedOutcomes
 from rulec.monitoring.batch.stacked.stacked_read import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_classes import PossibleWord
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers

@@ -13,6 +13,7 @@ from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.batch.stacked.stacked_read import ReadKeys, StackedRead, stacked_read
+from rulec.monitoring.batch.stacked.word_answers import FEW_WORDS, WordAnswers
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
@@ -25,7 +26,7 @@ from rulec.monitoring.uncertainty.state_letters.related_facts import (
 )
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.suppositions import ConstantsReader
-from rulec.monitoring.uncertainty.uncertain_machine import Answer, UncertainMachine
+from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Value
 from rulec.trace.plain_arrays import different_pairs
@@ -37,12 +38,6 @@ NOBODY = NothingKnown({}, Vocabulary("", {}, {}))
 
 MOST_SETS = 1 << 14
 """How many letter sets are kept before all are discarded."""
-
-MOST_BYTES = 1 << 22
-"""How many bytes of words with known answers are kept before all are discarded."""
-
-FEW_WORDS = 1 << 5
-"""Fewer words are evaluated one by one, without searching for equal ones."""
 
 _MOST_BITS = 63
 _NO_CLASS = 1 << _MOST_BITS
@@ -101,9 +96,7 @@ class StackedRule:
         self._class_bits: NDArray[np.uint64] = np.zeros(0, dtype=np.uint64)
         self._fit_bits = machine.machine.n_classes <= _MOST_BITS
         self.letters = self._no_letters()
-        self._answers: dict[bytes, Answer] = {}
-        self._words: dict[bytes, Answer | None] = {}
-        self._bytes = 0
+        self.answers = WordAnswers(machine, self.letters)
         self._vocabulary = vocabulary
         self._everybody: dict[str, str] = {}
         self._crowd: EntangledReads | None = None
@@ -146,7 +139,8 @@ class StackedRule:
     def forget_many(self) -> None:
         """Discard the known letter sets if there are many; their numbers become invalid."""
         if len(self.letters.sets) > MOST_SETS:
-            self.letters, self._answers, self._words = self._no_letters(), {}, {}
+            self.letters = self._no_letters()
+            self.answers = WordAnswers(self.machine, self.letters)
             self._busy_flags = np.zeros(0, dtype=bool)
             self._class_bits = np.zeros(0, dtype=np.uint64)
 
@@ -192,76 +186,6 @@ class StackedRule:
     def _keep(self, every: int, last: int) -> bool:
         """Whether all words of these classes, as bits, that end with one of ``last`` are kept."""
         return every < _NO_CLASS and self.machine.is_surely_kept(every, last)
-
-    def answer_to(self, letters: NDArray[np.intp]) -> Answer | None:
-        """The answer for a word, given as the number of a letter set for each state.
-
-        None if axioms exclude one of them.
-        """
-        key = letters.tobytes()
-        if key in self._words:
-            return self._words[key]
-        rows, _ = stretches(letters, np.array([0, len(letters)], dtype=np.intp))
-        answer = self._answer(rows)
-        if len(key) <= MOST_BYTES >> 10:
-            self._make_room(len(key))
-            self._words[key] = answer
-        return answer
-
-    def answer(self, rows: NDArray[np.intp]) -> Answer:
-        """The answer for a word, given as rows of a letter set's number and its repetitions."""
-        key = rows.tobytes()
-        answer = self._answers.get(key)
-        if answer is None:
-            self._make_room(len(key))
-            sets = self.letters.sets
-            word = ((sets[number], length) for number, length in rows.tolist())
-            answer = self._answers[key] = Answer(*self.machine.monitor.run_stretches(word))
-        return answer
-
-    def answers(
-        self, rows: NDArray[np.intp], ends: Sequence[int], places: Sequence[int]
-    ) -> list[Answer | None]:
-        """The answers for some of the words that lie in ``rows``, each between two ``ends``.
-
-        None for words of which axioms exclude a letter.
-        """
-        # One text of all words, since cutting arrays into thousands of words takes longer
-        text, width = rows.tobytes(), rows.itemsize * rows.shape[1]
-        keys = [text[width * ends[place] : width * ends[place + 1]] for place in places]
-        return [
-            self._answers.get(key) or self._answer(rows[ends[place] : ends[place + 1]])
-            for key, place in zip(keys, places, strict=True)
-        ]
-
-    def _answer(self, rows: NDArray[np.intp]) -> Answer | None:
-        sets = self.letters.sets
-        return self.answer(rows) if all(sets[n] for n in rows[:, 0].tolist()) else None
-
-    def _make_room(self, n_bytes: int) -> None:
-        self._bytes += n_bytes
-        if self._bytes > MOST_BYTES:
-            self._answers.clear()
-            self._words.clear()
-            self._bytes = n_bytes
-
-
-def stretches(
-    letters: NDArray[np.intp], bounds: NDArray[np.intp]
-) -> tuple[NDArray[np.intp], list[int]]:
-    """The letters of all words as rows of letter and repetitions, and each word's bounds in them.
-
-    Words begin and end at ``bounds``.
-    """
-    is_new = np.ones(len(letters), dtype=bool)
-    np.not_equal(letters[1:], letters[:-1], out=is_new[1:])
-    is_new[bounds[:-1]] = True
-    starts = is_new.nonzero()[0]
-    rows = np.empty((len(starts), 2), dtype=np.intp)
-    rows[:, 0] = letters[starts]
-    rows[:-1, 1] = starts[1:] - starts[:-1]
-    rows[-1:, 1] = len(letters) - starts[-1:]
-    return rows, starts.searchsorted(bounds).tolist()
 
 
 def _related(reads: Sequence[StackedRead], in_facts: frozenset[str]) -> tuple[int, ...]:

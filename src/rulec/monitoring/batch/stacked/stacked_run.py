@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence, Set
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rulec.array_types import Flags
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
-from rulec.automata.thresholds import exact_step
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.outcome_machine import KEPT
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.fault_messages import fault_of
-from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.findings import (
     Findings,
@@ -26,22 +24,29 @@ from rulec.monitoring.batch.findings import (
     RuleFindings,
     ViolationOrOpen,
 )
-from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
-from rulec.monitoring.batch.stacked.contradictions import (
-    LinkedFacts,
-    contradicted,
-    linked,
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
+from rulec.monitoring.batch.stacked.chosen_words import (
+    ChosenWords,
+    StackedOutcomes,
+    WordLetters,
+    by_unknown_constants,
+    hides_constants,
 )
+from rulec.monitoring.batch.stacked.contradictions import (
+    contradicted,
+)
+from rulec.monitoring.batch.stacked.crowded_states import CrowdedStates
+from rulec.monitoring.batch.stacked.entangled_letters import entangled_letters
+from rulec.monitoring.batch.stacked.instances import doubtful_instances, with_all_of
 from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
+from rulec.monitoring.batch.stacked.ready_rules import ready_rules
 from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
-from rulec.monitoring.batch.stacked.stacked_outcomes import StackedOutcomes, outcomes
-from rulec.monitoring.batch.stacked.stacked_read import ReadKeys, StackedRead
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.implied_values import with_defined_words
-from rulec.monitoring.state_validation import check_objects, check_told
-from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
-from rulec.rulebook.rules.axiom_instances import counts
+from rulec.monitoring.state_validation import check_objects
+from rulec.monitoring.uncertainty.uncertain_machine import Answer
+from rulec.monitoring.verdict import Verdict
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 
@@ -49,16 +54,8 @@ if TYPE_CHECKING:
     from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
 
-_MOST_KEPT = 1 << 10
-"""How many combinations of all reads' digits are kept before all are discarded."""
-
 _MOST_EXAMINED = 1 << 20
 """Of traces that contradict facts at most so many pairs of objects times states are examined."""
-
-
-def check_judgeable(kind: TraceKind, rulebook: CompiledRulebook) -> None:
-    """Raise RulecError or UnencodableError if no traces of this kind can be judged together."""
-    _ready_for(kind, rulebook.fitted_to(kind.step_s))
 
 
 class StackedRun:
@@ -70,14 +67,22 @@ class StackedRun:
     def __init__(self, traces: JoinedTraces, rulebook: CompiledRulebook) -> None:
         self._rulebook = rules = rulebook.fitted_to(traces.kind.step_s)
         self._traces, self._n_traces = traces, len(traces.lengths)
-        self._ready = _ready_for(traces.kind, rules)
+        self._ready = ready_rules(traces.kind, rules)
         _check_objects(traces, rules.vocabulary)
         self._stack = Stack(traces, self._ready.judged.vocabulary, self._ready.defaults)
         self._reader = StackReader(self._stack)
         self._reasons = StackedReasons(self._reader)
         self._close = _CloseLooks(traces.trace, rules)
-        self._simple = self._ready.simple_rules(frozenset(self._stack.untold(self._ready.names)))
+        self._simple = self._ready.simple(frozenset(self._stack.untold(self._ready.names)))
         self._odd: set[int] = set()
+
+    def verdicts(self) -> list[Verdict | None]:
+        """The verdicts on the traces; None for those that must be judged by their states."""
+        id_of, says = self._traces.id_of, self._traces.says
+        return [
+            own and own.findings.verdict(number, id_of(number), partial(says, number))
+            for number, own in enumerate(self.judged())
+        ]
 
     def judged(self) -> list[JudgedTrace | None]:
         """The traces with their findings; None for those that must be judged by their states."""
@@ -208,101 +213,115 @@ class StackedRun:
         return sure | {x for x in closely - sure if self._close[x].is_doubtful(rule.rule.name)}
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _SimpleRules:
-    """The ``rules`` that can be judged on arrays, by number, and the linked ``facts`` about them.
+def outcomes(
+    rule: StackedRule, reader: StackReader, rulebook: CompiledRulebook, suspects: Flags
+) -> Iterator[StackedOutcomes]:
+    """All choices for which a rule is not kept.
 
-    ``reads`` are the distinct reads, and ``places`` those of each rule's reads among them. The
-    rules that may have an effect are cached by the digits that all reads have anywhere.
+    They are sifted three times, ever more exactly: letters in any order (``doubtful_instances``),
+    the machine on what each read allows by itself, the machine on what they allow together: fewer
+    letters, so that this need not be found out for choices that are kept before. A known letter is
+    a set of one, of which best and worst outcome are the same. In traces that are ``suspects`` all
+    choices are examined for letters that axioms exclude. Raises UnencodableError.
     """
-
-    rules: Mapping[int, StackedRule]
-    facts: Sequence[LinkedFacts]
-    reads: Sequence[StackedRead]
-    places: Mapping[int, Sequence[int]]
-    _busy: dict[tuple[int, ...], frozenset[int]] = field(default_factory=dict, init=False)
-
-    @staticmethod
-    def of(rules: Mapping[int, StackedRule], lacking: Set[str]) -> _SimpleRules:
-        """These rules with their reads; facts about the ``lacking`` ones are not looked into."""
-        judged = [rule for rule in rules.values() if rule.rule.name not in lacking]
-        facts = dict.fromkeys(fact for rule in judged for fact in rule.facts)
-        reads = {read.digits_key: read for rule in rules.values() for read in rule.reads}
-        place_of = {key: place for place, key in enumerate(reads)}
-        places = {
-            number: tuple([place_of[read.digits_key] for read in rule.reads])
-            for number, rule in rules.items()
-        }
-        return _SimpleRules(rules, tuple(linked(tuple(facts))), tuple(reads.values()), places)
-
-    def busy(self, reader: StackReader) -> frozenset[int]:
-        """The numbers of the rules that may be violated or open. Raises UnencodableError."""
-        digits = reader.digits_of(self.reads)
-        busy = self._busy.get(digits)
-        if busy is None:
-            if len(self._busy) >= _MOST_KEPT:
-                self._busy.clear()
-            busy = self._busy[digits] = frozenset(
-                number
-                for number, rule in self.rules.items()
-                if not rule.machine.idle.of_cube([digits[k] for k in self.places[number]])
-            )
-        return busy
+    instances = doubtful_instances(rule, reader)
+    if rule.facts and suspects.any():
+        instances = with_all_of(suspects, instances, rule, reader.stack)
+    if not len(instances.traces):
+        return
+    for chosen in by_unknown_constants(rule, reader, instances, rulebook):
+        apart = _letters_apart(rule, reader, chosen)
+        known = [rule.answers.of(own.letters, chosen.bounds) for own in apart]
+        doubtful = suspects[chosen.instances.traces]
+        for answers in known:
+            doubtful |= [answer is None or answer.worst != KEPT for answer in answers]
+        if not doubtful.any():
+            continue
+        if not doubtful.all():
+            members = doubtful.nonzero()[0]
+            chosen = chosen.part(rule, reader, members)
+            apart = _letters_apart(rule, reader, chosen)
+            known = [[answers[member] for member in members.tolist()] for answers in known]
+        together, odd = _letters_together(rule, reader, chosen, apart)
+        for place, (own, before) in enumerate(zip(together, apart, strict=True)):
+            if own.letters is not before.letters:
+                known[place] = rule.answers.of(own.letters, chosen.bounds)
+        # Letters that axioms exclude make a word odd
+        are_odd = np.logical_or.reduceat(odd, chosen.bounds[:-1]).tolist()
+        joint = known[0] if len(known) == 1 else map(_combined, zip(*known, strict=True))
+        found = [None if is_odd else own for is_odd, own in zip(are_odd, joint, strict=True)]
+        kept_not = {n: own for n, own in enumerate(found) if own is None or own.worst != KEPT}
+        yield StackedOutcomes(rule, chosen, together, kept_not)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _ReadyRules:
-    """What is the same for all traces of one kind.
-
-    ``names`` are those of the ``rules`` that are simple, ``defaults`` the default values looked up
-    so far.
-    """
-
-    judged: JudgedRules
-    rules: Sequence[StackedRule]
-    names: frozenset[str]
-    defaults: dict[str, Any] = field(default_factory=dict, init=False)
-    _simple: dict[frozenset[str], _SimpleRules] = field(default_factory=dict, init=False)
-
-    def simple_rules(self, untold: frozenset[str]) -> _SimpleRules:
-        """The rules that can be evaluated on arrays if some names are missing, usually all."""
-        known = self._simple.get(untold)
-        if known is None:
-            known = self._simple[untold] = _SimpleRules.of(
-                {
-                    number: rule
-                    for number, rule in enumerate(self.rules)
-                    if rule.is_simple and untold.isdisjoint(rule.names)
-                },
-                self.judged.lacking,
-            )
-        return known
+def _letters_apart(
+    rule: StackedRule, reader: StackReader, chosen: ChosenWords
+) -> Sequence[WordLetters]:
+    """The letters for all supposed values, from what each read allows by itself."""
+    declarations = reader.stack.vocabulary.declarations
+    found = []
+    for values in chosen.supposed:
+        instead = {}
+        for place in chosen.unknown:
+            value = values.get(rule.subject(place))
+            if value is not None:
+                instead[place] = rule.reads[place].number_of(value, declarations)
+        numbers = chosen.numbers.with_others(instead) if instead else chosen.numbers
+        letters = chosen.instances.letters
+        if instead or letters is None:
+            letters = rule.letters.letters_of(numbers)
+        elif isinstance(letters, np.ndarray):
+            letters = letters.take(chosen.spots.states)
+        if not isinstance(letters, np.ndarray):
+            letters = np.full(len(chosen.spots.states), letters, dtype=np.intp)
+        found.append(WordLetters(values, numbers, letters))
+    return found
 
 
-def _ready_for(kind: TraceKind, rules: CompiledRulebook) -> _ReadyRules:
-    """The rules for traces of this kind. Raises RulecError, UnencodableError."""
-    known: dict[TraceKind, _ReadyRules] = rules.prepared.setdefault(_ReadyRules, {})
-    if kind not in known:
-        known[kind] = _ready_rules(kind, rules)
-    return known[kind]
+def _letters_together(
+    rule: StackedRule, reader: StackReader, chosen: ChosenWords, apart: Sequence[WordLetters]
+) -> tuple[Sequence[WordLetters], Flags]:
+    """The letters that reads allow together, and where they are odd."""
+    odd = hides_constants(rule, reader, chosen.spots)
+    if len(chosen.unknown) > 1 and not any(chosen.supposed):
+        odd[:] = True
+    found: list[WordLetters] = []
+    crowd: CrowdedStates | None = None
+    for own in apart:
+        entangled, letters = None, own.letters
+        if rule.related and not odd.all():
+            partial = np.zeros(len(letters), dtype=bool)
+            partial |= rule.letters.are_partial(own.numbers, rule.related)
+            if partial.any():
+                about = chosen.spots, partial
+                crowd = crowd or CrowdedStates(rule, reader)
+                entangled = entangled_letters(
+                    rule, reader, about, own.numbers, own.supposed, crowd=crowd
+                )
+                if entangled is None:
+                    odd |= partial
+                else:
+                    sets = [rule.letters.number_of(classes) for classes in entangled.classes]
+                    letters = letters.copy()
+                    letters[entangled.places] = np.array(sets, dtype=np.intp)[entangled.numbers]
+        if rule.facts:
+            for nothing in rule.letters.numbers_of_none:
+                odd |= letters == nothing
+        found.append(own._replace(letters=letters, entangled=entangled))
+    return found, odd
 
 
-def _ready_rules(kind: TraceKind, rules: CompiledRulebook) -> _ReadyRules:
-    for rule in rules.rules:
-        check_step(rule, exact_step(kind.step_s))
-    check_told(kind.told, rules.vocabulary)
-    constants = rules.vocabulary.constants
-    for fact in rules.axioms:
-        if counts(fact.formula) or not set(constants).isdisjoint(names_of(fact.formula)):
-            raise UnencodableError  # what it says of values is looked up state by state
-    judged = judged_rules(rules, kind.told, cut=kind.ends == "cut")
-    keys: ReadKeys = {}
-    ready = [
-        StackedRule(rule, machine, rules, judged.vocabulary, keys)
-        for rule, machine in judged.machines
-    ]
-    names = frozenset().union(*(rule.names for rule in ready if rule.is_simple))
-    return _ReadyRules(judged, ready, names)
+def _combined(of_alternatives: Sequence[Answer | None]) -> Answer | None:
+    """The combined answer of several words; None if there is none."""
+    answers = [answer for answer in of_alternatives if answer is not None]
+    if not answers:
+        return None
+    steps = [answer.step for answer in answers if answer.step is not None]
+    return Answer(
+        min(answer.best for answer in answers),
+        max(answer.worst for answer in answers),
+        max(steps) if len(steps) == len(answers) else None,
+    )
 
 
 class _CloseLooks(dict[int, "UncertainRun"]):
