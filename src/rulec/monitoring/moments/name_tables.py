@@ -27,9 +27,8 @@ from rulec.trace.partly_known.partly_known_values import (
 )
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import Array
-from rulec.vocabulary import Declaration, Enumeration, Vocabulary
+from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
-from rulec.vocabulary.vocabulary_model import least_value
 from rulec.vocabulary.written_numbers import WrittenNumber
 
 
@@ -94,30 +93,16 @@ class NameTables:
         states = np.minimum(np.maximum(states, since[:, None]), until[:, None])
         first, second = (own.repeat(self.n_states) for own in rows.T)
         places = stack.pairs.places(first, second, states.ravel())
-        return self._at(name, places.reshape(states.shape))
+        return self._stack.named(name, places.reshape(states.shape))
 
     def _rows(self, name: str, begins: Indices, spans: Indices) -> NameValues:
         """Rows of values that begin at these places, for states from the first to the last."""
         first, last = spans[:, :1], spans[:, 1:]
         within = np.minimum(np.maximum(self._states, first), last)
-        rows = self._at(name, begins[:, None] + within - first)
+        rows = self._stack.named(name, begins[:, None] + within - first)
         if not self.vocabulary.declarations[name].constant:
             return rows
         return _constant(rows, within == self._states)
-
-    def _at(self, name: str, places: Indices) -> NameValues:
-        """The values at these places of a name's column; its default if it has none."""
-        declaration, column = self.vocabulary.declarations[name], self._stack.column(name)
-        if column is None:
-            default, is_known = _default_of(declaration)
-            values: Array = np.full(places.shape, default, dtype=type(default))
-            unknown = None if is_known else np.ones(places.shape, dtype=bool)
-            return partly_known(declaration, values, values, unknown)
-        values = column.values[places]
-        # One array for both ends says that they are equal
-        upper = values if column.upper is None else column.upper[places]
-        unknown = None if column.unknown is None else column.unknown[places]
-        return partly_known(declaration, values, upper, unknown)
 
     def _by_states(self, name: str, rows: Indices) -> NameValues:
         """The rows of a name about more than two objects."""
@@ -167,21 +152,6 @@ def _plain(state: Mapping[str, Any], trace: Trace, vocabulary: Vocabulary) -> di
     about = {name: own.parameters for name, own in vocabulary.declarations.items()}
     few = (name for name in state if name in about and len(about[name]) <= 2)
     return {name: plain(state[name], about[name]) for name in few}
-
-
-def _default_of(declaration: Declaration | None) -> tuple[bool | float | int, bool]:
-    """A name's default, encoded as in columns, and whether it has one.
-
-    If not, an arbitrary value.
-    """
-    if declaration is None:
-        return False, False
-    default: Any = declaration.default
-    is_known = default is not None and default is not UNKNOWN
-    value = default if is_known else least_value(declaration)
-    if isinstance(declaration, Enumeration):
-        return declaration.values.index(str(value)), is_known
-    return value if isinstance(value, bool) else float(value), is_known
 
 
 def _constant(rows: NameValues, there: Flags) -> NameValues:

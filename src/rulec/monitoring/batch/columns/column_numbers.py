@@ -16,8 +16,6 @@ from rulec.automata.thresholds import ThresholdScale, exact, scale
 from rulec.logic import formula as ltl
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace.partly_known.partly_known_values import (
-    EnumeratedChoice,
-    NameValues,
     Number,
     Truth,
 )
@@ -182,16 +180,6 @@ def comparison_sides(
         np.array([[sides.all() for sides in row] for row in pairs]),
         np.array([[sides.any() for sides in row] for row in pairs]),
     )
-
-
-def proposition_truth(values: NameValues, asked: ltl.Atom, declaration: Declaration) -> Truth:
-    """The truth of a proposition from the values of the signal or enumeration that it names."""
-    if isinstance(values, EnumeratedChoice):
-        assert isinstance(declaration, Enumeration), "its values are choices"
-        assert asked.value is not None, "the formula has been checked"
-        return values.equals(declaration.values.index(asked.value))
-    assert isinstance(values, Truth), "the formula has been checked"
-    return values
 
 
 def truth_between(ready: ComparisonSides, parts: Sequence[tuple[Fraction, Number]]) -> Truth:

@@ -11,18 +11,20 @@ import numpy as np
 
 from rulec.array_types import Flags, Indices
 from rulec.automata.thresholds import EXACT_IN_FLOATS, exact_step
+from rulec.logic.bounds import in_steps
 from rulec.monitoring.batch.columns.encoded_columns import (
     UnencodableError,
     column_dtype,
     encode_values,
 )
-from rulec.monitoring.batch.columns.meant_columns import MeaningReader
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
 from rulec.monitoring.batch.joined.object_pairs import ObjectPairs
 from rulec.monitoring.batch.joined.trace_places import TracePlaces
+from rulec.monitoring.batch.stacked.meant_columns import meant
 from rulec.monitoring.told_names import words_meant
 from rulec.trace.partly_known.column_values import partly_known
 from rulec.trace.partly_known.partly_known_values import NameValues
+from rulec.trace.partly_known.temporal_operators import Beyond
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -137,16 +139,10 @@ class Stack(TracePlaces):
 
     def _meant_column(self, name: str) -> StackColumn:
         """The column of a word, by its meaning where no state tells it."""
-        meaning = MeaningReader(
-            vocabulary=self.vocabulary,
-            named=self.named,
-            begins=self.begins,
-            starts=self.starts,
-            state_of=self.state_of,
-            of_type=self.cells_of_type,
-            step_s=exact_step(self._kind.step_s),
-            beyond="cut" if self._kind.ends == "cut" else "over",
-        ).of(self.vocabulary.meanings[name])
+        own = self.vocabulary.meanings[name]
+        formula = in_steps(own.formula, exact_step(self._kind.step_s))
+        beyond: Beyond = "cut" if self._kind.ends == "cut" else "over"
+        meaning = meant(own.variables, formula, self, self.named, beyond)
         is_about = np.ones(len(meaning.sure), dtype=bool)
         for kind in self.vocabulary.declarations[name].parameters:
             is_about = self.of_type(kind)[self.object_of]
@@ -166,23 +162,28 @@ class Stack(TracePlaces):
         piece = self._pieces[0]
         return any(name in part for part in (piece.world, piece.about, piece.between))
 
-    def named(self, name: str) -> NameValues:
-        """The values of a name in all states, or in all cells; its default where it is not given.
+    def named(self, name: str, at: Indices | None = None) -> NameValues:
+        """A name's values ``at`` places, or at all of its places; its default if none is given.
 
         Raises UnencodableError.
         """
         declaration, column = self.vocabulary.declarations[name], self.column(name)
-        if column is not None:
-            values, unknown = column.values, either(column.unknown, column.missing)
-            upper = values if column.upper is None else column.upper
-            return partly_known(declaration, values, upper, unknown)
-        n_places = int((self.starts if declaration.parameters else self.begins)[-1])
-        default = self.default(name)
-        is_known = default is not None and default is not UNKNOWN
-        values = np.full(n_places, default if is_known else _anything(declaration))
-        return partly_known(
-            declaration, values, values, None if is_known else ~np.zeros(n_places, dtype=bool)
-        )
+        if column is None:
+            default, n_places = self.default(name), self.n_states
+            if declaration.parameters:
+                n_places = int(self.starts[-1])
+            is_known = default is not None and default is not UNKNOWN
+            shape = n_places if at is None else at.shape
+            values = np.full(shape, default if is_known else _anything(declaration))
+            unknown = None if is_known else np.ones(shape, dtype=bool)
+            return partly_known(declaration, values, values, unknown)
+        values, upper = column.values, column.upper
+        unknown = either(column.unknown, column.missing)
+        if at is not None:
+            values, upper = values[at], None if upper is None else upper[at]
+            unknown = None if unknown is None else unknown[at]
+        # One array for both ends says that they are equal
+        return partly_known(declaration, values, values if upper is None else upper, unknown)
 
     @cached_property
     def columns(self) -> Mapping[str, StackColumn]:
