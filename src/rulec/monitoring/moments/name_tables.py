@@ -115,9 +115,9 @@ class NameTables:
             values += [*own, *own[-1:] * (self.n_states - len(own))]
         shape = len(rows), self.n_states
         column = encode_partly_known([UNKNOWN if x is None else x for x in values], declaration)
-        low, high, dark = (None if own is None else own.reshape(shape) for own in column)
-        assert low is not None, "it has values"
-        return partly_known(declaration, low, low if high is None else high, dark)
+        column = column.at(np.arange(len(values)).reshape(shape))
+        upper = column.values if column.upper is None else column.upper
+        return partly_known(declaration, column.values, upper, column.unknown)
 
 
 def tables_of(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> NameTables:

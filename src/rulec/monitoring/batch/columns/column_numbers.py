@@ -20,8 +20,6 @@ from rulec.trace.partly_known.partly_known_values import (
     Truth,
 )
 from rulec.trace.trace_columns import Array, smallest_unsigned
-from rulec.vocabulary import Declaration, Enumeration, Quantity
-from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 
 Mask = NDArray[np.bool_] | np.bool_
 
@@ -212,22 +210,3 @@ def alike_places(columns: Iterable[NDArray[Any]], n_places: int) -> NDArray[np.i
         codes += group_of * (int(codes.max(initial=0)) + 1)
         group_of = np.unique(codes, return_inverse=True)[1]
     return group_of
-
-
-def partial_values(
-    values: Array,
-    upper: Array | None,
-    unknown: NDArray[np.bool_] | None,
-    declaration: Declaration,
-) -> list[PartialValue | None]:
-    """The values of states, given as columns of values or places, of upper bounds, and of flags."""
-    cells: list[Any] = values.tolist()
-    if isinstance(declaration, Enumeration):
-        cells = [declaration.values[place] for place in cells]
-    elif isinstance(declaration, Quantity) and upper is not None:
-        ends = zip(cells, upper.tolist(), strict=True)
-        cells = [low if low == high else Interval(low, high) for low, high in ends]
-    if unknown is not None:
-        for place in unknown.nonzero()[0].tolist():
-            cells[place] = UNKNOWN
-    return cells

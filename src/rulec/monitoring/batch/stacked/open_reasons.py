@@ -15,7 +15,7 @@ from rulec.logic import formula as ltl
 from rulec.logic.free_names import reads_in
 from rulec.monitoring.batch.stacked.chosen_words import StackedOutcomes
 from rulec.monitoring.batch.stacked.entangled_letters import digits_at
-from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
+from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_read import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_classes import PossibleWord
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
@@ -107,7 +107,7 @@ class StackedReasons:
         for _, term in stacked.read.terms:
             assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
             column = stack.column(term.name)
-            flags = None if column is None else is_partial(column)
+            flags = None if column is None else column.partial
             if column is None:
                 is_unknown = stack.default(term.name) is UNKNOWN
             else:
@@ -125,7 +125,7 @@ class StackedReasons:
             assert not isinstance(read, ltl.Count), "it counts nothing"
             name, arguments = read.name, read.arguments
             column = stack.column(name)
-            flags = None if column is None else is_partial(column)
+            flags = None if column is None else column.partial
             if column is None:
                 is_unknown = there & (stack.default(name) is UNKNOWN)
             elif flags is None:

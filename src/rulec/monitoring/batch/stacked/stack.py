@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from math import isfinite
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -13,8 +13,10 @@ from rulec.array_types import Flags, Indices
 from rulec.automata.thresholds import EXACT_IN_FLOATS, exact_step
 from rulec.logic.bounds import in_steps
 from rulec.monitoring.batch.columns.encoded_columns import (
+    PartlyKnown,
     UnencodableError,
     column_dtype,
+    either,
     encode_values,
 )
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
@@ -31,23 +33,6 @@ from rulec.vocabulary.partial_values import UNKNOWN
 from rulec.vocabulary.vocabulary_model import least_value
 
 _NOWHERE = np.zeros(0, dtype=bool)
-
-
-class StackColumn(NamedTuple):
-    """The values of a name in all states, or cells, as in ``TraceColumns``.
-
-    None means nowhere. Where a value is ``missing`` it is not given and there is no default.
-    """
-
-    values: Array
-    upper: Array | None
-    unknown: Flags | None
-    missing: Flags | None
-
-    @property
-    def apart(self) -> Flags | None:
-        """Where a number is known only as an interval."""
-        return None if self.upper is None else self.upper != self.values
 
 
 class Stack(TracePlaces):
@@ -70,7 +55,7 @@ class Stack(TracePlaces):
         self._meant = words_meant(vocabulary, traces.kind.told)
         for name in self._meant:
             self.arity.setdefault(name, len(vocabulary.declarations[name].parameters))
-        self._columns: dict[str, StackColumn] = {}
+        self._columns: dict[str, PartlyKnown] = {}
         self._ends: dict[str, tuple[float, float]] = {}
 
     def untold(self, names: Iterable[str]) -> set[str]:
@@ -106,7 +91,7 @@ class Stack(TracePlaces):
 
     def partial_traces(self) -> set[int]:
         """Traces in which a value is unknown or an interval. Raises UnencodableError."""
-        doubts = ((name, either(own.apart, own.unknown)) for name, own in self.columns.items())
+        doubts = ((name, own.partial) for name, own in self.columns.items())
         known = ((name, flags) for name, flags in doubts if flags is not None)
         return {x for name, flags in known for x in self.traces_at(name, flags.nonzero()[0])}
 
@@ -128,7 +113,7 @@ class Stack(TracePlaces):
         """The pairs of objects that something is said about."""
         return self.pairs_of(self._pieces[0].pairs)
 
-    def column(self, name: str) -> StackColumn | None:
+    def column(self, name: str) -> PartlyKnown | None:
         """The column of a name; None if no state contains it. Raises UnencodableError."""
         if name not in self.arity:
             return None
@@ -137,7 +122,7 @@ class Stack(TracePlaces):
             self._columns[name] = self._meant_column(name) if is_meant else self._column(name)
         return self._columns[name]
 
-    def _meant_column(self, name: str) -> StackColumn:
+    def _meant_column(self, name: str) -> PartlyKnown:
         """The column of a word, by its meaning where no state tells it."""
         own = self.vocabulary.meanings[name]
         formula = in_steps(own.formula, exact_step(self._kind.step_s))
@@ -156,7 +141,7 @@ class Stack(TracePlaces):
             sure = np.where(untold, sure, told.values & ~unknown)
             possible = np.where(untold, possible, told.values | unknown)
         unknown = possible & ~sure
-        return StackColumn(sure, None, unknown if unknown.any() else None, None)
+        return PartlyKnown(sure, unknown=unknown if unknown.any() else None)
 
     def _is_told(self, name: str) -> bool:
         piece = self._pieces[0]
@@ -177,16 +162,14 @@ class Stack(TracePlaces):
             values = np.full(shape, default if is_known else _anything(declaration))
             unknown = None if is_known else np.ones(shape, dtype=bool)
             return partly_known(declaration, values, values, unknown)
+        column = column if at is None else column.at(at)
         values, upper = column.values, column.upper
         unknown = either(column.unknown, column.missing)
-        if at is not None:
-            values, upper = values[at], None if upper is None else upper[at]
-            unknown = None if unknown is None else unknown[at]
         # One array for both ends says that they are equal
         return partly_known(declaration, values, values if upper is None else upper, unknown)
 
     @cached_property
-    def columns(self) -> Mapping[str, StackColumn]:
+    def columns(self) -> Mapping[str, PartlyKnown]:
         """The columns of all names in the traces. Raises UnencodableError."""
         if len(self._pieces) == 1:
             self._columns |= self._whole_signals()
@@ -194,12 +177,12 @@ class Stack(TracePlaces):
             self.column(name)
         return self._columns
 
-    def _whole_signals(self) -> dict[str, StackColumn]:
+    def _whole_signals(self) -> dict[str, PartlyKnown]:
         """The signals of the only piece that are known in all states, of all objects."""
         (piece,), declarations = self._pieces, self.vocabulary.declarations
         others = set().union(*self._flagged, self._partly, piece.texts)
         return {
-            name: StackColumn(values, None, None, None)
+            name: PartlyKnown(values)
             for arity, part in enumerate((piece.world, piece.about))
             for name, values in part.items()
             if name not in others
@@ -248,7 +231,7 @@ class Stack(TracePlaces):
             self._defaults[name] = default
         return self._defaults[name]
 
-    def _column(self, name: str) -> StackColumn:
+    def _column(self, name: str) -> PartlyKnown:
         declaration = self.vocabulary.declarations.get(name)
         arity = self.arity[name]
         if declaration is None or len(declaration.parameters) != arity:
@@ -283,11 +266,11 @@ class Stack(TracePlaces):
                 raise UnencodableError
             values = np.where(unfit, _anything(declaration), values)
             upper = None if upper is None else np.where(unfit, values, upper)
-        column = StackColumn(values, upper, unknown, None)
+        column = PartlyKnown(values, upper, unknown)
         column = column if unsaid is None else self._with_default(name, column, unsaid)
         return column if arity < 2 else self._with_strangers(name, column)
 
-    def _with_strangers(self, name: str, column: StackColumn) -> StackColumn:
+    def _with_strangers(self, name: str, column: PartlyKnown) -> PartlyKnown:
         """The column about pairs, with a last value for all pairs of which nothing is said."""
         default, unknown, upper = self.default(name), column.unknown, column.upper
         is_dark = default is UNKNOWN
@@ -298,7 +281,7 @@ class Stack(TracePlaces):
             unknown = np.append(known if unknown is None else unknown, is_dark)
         values = np.append(column.values, column.values.dtype.type(default))
         upper = None if upper is None else np.append(upper, float(default))
-        return StackColumn(values, upper, unknown, column.missing)
+        return PartlyKnown(values, upper, unknown, column.missing)
 
     def _unknown_and_unsaid(
         self, name: str, parts: Sequence[Array]
@@ -314,21 +297,19 @@ class Stack(TracePlaces):
             _joined(name, [piece.absent for piece in self._pieces], parts),
         )
 
-    def _with_default(self, name: str, column: StackColumn, unsaid: Flags) -> StackColumn:
+    def _with_default(self, name: str, column: PartlyKnown, unsaid: Flags) -> PartlyKnown:
         """The column with the default where no value is given."""
         default, unknown = self.default(name), column.unknown
         declaration = self.vocabulary.declarations[name]
         if default is None:
             missing = unsaid & self._suits(declaration)
-            return StackColumn(
-                column.values, column.upper, unknown, missing if missing.any() else None
-            )
+            return column._replace(missing=missing if missing.any() else None)
         if default is UNKNOWN:  # it is not told, and yet said of somebody
-            return StackColumn(column.values, column.upper, either(unknown, unsaid), None)
+            return column._replace(unknown=either(unknown, unsaid))
         values = np.where(unsaid, default, column.values).astype(column_dtype(declaration))
         upper = None if column.upper is None else np.where(unsaid, default, column.upper)
         unknown = None if unknown is None else unknown & ~unsaid
-        return StackColumn(values, upper, unknown, None)
+        return PartlyKnown(values, upper, unknown)
 
     def _suits(self, declaration: Declaration) -> Flags:
         """Which values of a name's column are about different objects of its types."""
@@ -410,13 +391,6 @@ def _ends(low: Array, high: Array | None) -> tuple[float, float]:
     if not len(low):
         return 0.0, 0.0
     return np.minimum.reduce(low).item(), np.maximum.reduce(most).item()
-
-
-def either(first: Flags | None, second: Flags | None) -> Flags | None:
-    """Where at least one of two flags is set; None means nowhere."""
-    if first is None or second is None:
-        return second if first is None else first
-    return first | second
 
 
 def _anything(declaration: Declaration) -> Any:

@@ -19,10 +19,9 @@ from rulec.monitoring.batch.columns.column_numbers import (
     Mask,
     comparison_sides,
     numbers_between,
-    partial_values,
 )
 from rulec.monitoring.batch.stacked.met_values import KLEENE_COLUMNS, UNKNOWN, MetValues
-from rulec.monitoring.batch.stacked.stack import Stack, StackColumn, either
+from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stacked_read import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace.partly_known.partly_known_values import Truth
@@ -154,8 +153,8 @@ class StackReader:
                 read.meanings[int(default)] if ready is None else 1 << ready.digit(float(default))
             )
         if ready is None:
-            return read.of_values(self.met_values.values(name))
-        ends = None if ready.quantity is None else self.met_values.ends(name)
+            return read.of_values(self.met_values.signals.get(name, 0))
+        ends = None if ready.quantity is None else self.stack.ends(name)
         if ends is None:
             return read.every
         low, high = map(ready.digit, ends)
@@ -184,7 +183,7 @@ class StackReader:
             every = Spots(self.stack.state_of, cells, whole=True)
         numbers = self._of(read, every)
         if isinstance(read.read, Read):
-            met = self.met_values.values(read.names[0])
+            met = self.met_values.signals.get(read.names[0], 0)
             if met & (met - 1):
                 return numbers
         if isinstance(numbers, np.ndarray) and len(numbers) and numbers[0] == numbers[-1]:
@@ -301,7 +300,7 @@ class StackReader:
     def _atom(self, atom: ltl.Atom, spots: Spots, arguments: tuple[str, ...]) -> Truth:
         declaration = self.stack.vocabulary.declarations[atom.name]
         column = self.stack.column(atom.name)
-        met = self.met_values.values(atom.name)
+        met = self.met_values.signals.get(atom.name, 0)
         values: Any
         if column is None:
             values, dark = self.stack.default(atom.name), None
@@ -328,15 +327,4 @@ class StackReader:
         column = self.stack.column(name)
         if column is None:
             return [declaration.default] * len(spots.states)
-        where = self.where(variables, spots)
-        return partial_values(
-            column.values[where],
-            None if column.upper is None else column.upper[where],
-            None if column.unknown is None else column.unknown[where],
-            declaration,
-        )
-
-
-def is_partial(column: StackColumn) -> Flags | None:
-    """The mask of cells without a single known value."""
-    return either(column.apart, column.unknown)
+        return column.at(self.where(variables, spots)).decoded(declaration)
