@@ -159,9 +159,9 @@ def explain(
         [reader.view(number) for number in numbers],
         binding.objects,
         numbers,
-        [bisect_left(numbers, number) for number in states],
-        place,
-        lambda index: StateView(given.states[numbers[index]], {}, declared),
+        shown=[bisect_left(numbers, number) for number in states],
+        decisive=place,
+        given=lambda index: StateView(given.states[numbers[index]], {}, declared),
     )
     whole = len(numbers) == len(stretch)
     repair = None

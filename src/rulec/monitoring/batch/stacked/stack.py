@@ -20,9 +20,9 @@ from rulec.monitoring.batch.columns.encoded_columns import (
     encode_values,
 )
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
+from rulec.monitoring.batch.joined.meant_columns import meant
 from rulec.monitoring.batch.joined.object_pairs import ObjectPairs
 from rulec.monitoring.batch.joined.trace_places import TracePlaces
-from rulec.monitoring.batch.stacked.meant_columns import meant
 from rulec.monitoring.told_names import words_meant
 from rulec.trace.partly_known.column_values import partly_known
 from rulec.trace.partly_known.partly_known_values import NameValues
