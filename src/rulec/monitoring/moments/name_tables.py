@@ -17,7 +17,7 @@ from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
 from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.implied_values import with_defined_words, with_derived_values
 from rulec.monitoring.state_view import value_in
-from rulec.monitoring.told_names import untold_names, with_untold
+from rulec.monitoring.told_names import untold_names, with_untold, words_meant
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.trace import Trace
 from rulec.trace.partly_known.column_values import partly_known
@@ -59,7 +59,8 @@ class NameTables:
         self.vocabulary = with_untold(vocabulary, untold) if untold else vocabulary
         declared = self.vocabulary.declarations.items()
         dark = {name: UNKNOWN for name, item in declared if item.default is None}
-        self._traces, self._stack = traces, Stack(traces, self.vocabulary, dark)
+        meant = words_meant(self.vocabulary, traces.kind.told)
+        self._traces, self._stack = traces, Stack(traces, self.vocabulary, meant, dark)
         self._n_objects = traces.n_objects[0]
         self.objects = tuple(traces.names[: self._n_objects])
         self.types = tuple(traces.types[: self._n_objects])

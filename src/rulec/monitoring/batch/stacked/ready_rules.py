@@ -15,6 +15,7 @@ from rulec.monitoring.batch.stacked.stack_reader import StackReader
 from rulec.monitoring.batch.stacked.stacked_read import ReadKeys
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.state_validation import check_told
+from rulec.monitoring.told_names import words_meant
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.rulebook.rules.axiom_instances import counts
 
@@ -63,8 +64,8 @@ class SimpleRules:
 class ReadyRules:
     """What is the same for all traces of one kind. Raises RulecError, UnencodableError.
 
-    ``names`` are those of the ``rules`` that are simple, ``defaults`` the default values looked up
-    so far.
+    ``names`` are those of the ``rules`` that are simple, ``meant`` the words that their meanings
+    give, ``defaults`` the default values looked up so far.
     """
 
     def __init__(self, kind: TraceKind, book: CompiledRulebook) -> None:
@@ -82,6 +83,7 @@ class ReadyRules:
             for rule, machine in self.judged.machines
         ]
         self.names = frozenset().union(*[rule.names for rule in self.rules if rule.is_simple])
+        self.meant = words_meant(self.judged.vocabulary, kind.told)
         self.defaults: dict[str, Any] = {}
         self._simple: dict[frozenset[str], SimpleRules] = {}
 

@@ -23,7 +23,6 @@ from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
 from rulec.monitoring.batch.joined.meant_columns import meant
 from rulec.monitoring.batch.joined.object_pairs import ObjectPairs
 from rulec.monitoring.batch.joined.trace_places import TracePlaces
-from rulec.monitoring.told_names import words_meant
 from rulec.trace.partly_known.column_values import partly_known
 from rulec.trace.partly_known.partly_known_values import NameValues
 from rulec.trace.partly_known.temporal_operators import Beyond
@@ -38,12 +37,17 @@ _NOWHERE = np.zeros(0, dtype=bool)
 class Stack(TracePlaces):
     """Traces with the same names, end to end; ``vocabulary`` has the defaults of other names.
 
-    ``defaults`` caches these, encoded as in columns, for all traces judged with the vocabulary.
+    ``defaults`` caches these, encoded as in columns, for all traces judged with the vocabulary;
+    ``meant`` are the words that their meanings give in these traces.
     ``arity`` is the number of objects that each name in the traces is about.
     """
 
     def __init__(
-        self, traces: JoinedTraces, vocabulary: Vocabulary, defaults: dict[str, Any]
+        self,
+        traces: JoinedTraces,
+        vocabulary: Vocabulary,
+        meant: Sequence[str],
+        defaults: dict[str, Any],
     ) -> None:
         super().__init__(traces.lengths, traces.n_objects, traces.spans, traces.types, vocabulary)
         self._defaults = defaults
@@ -52,8 +56,8 @@ class Stack(TracePlaces):
         parts = piece.world, piece.about, piece.between
         self.arity = {name: n for n, part in enumerate(parts) for name in part}
         self._kind = traces.kind
-        self._meant = words_meant(vocabulary, traces.kind.told)
-        for name in self._meant:
+        self._meant = meant
+        for name in meant:
             self.arity.setdefault(name, len(vocabulary.declarations[name].parameters))
         self._columns: dict[str, PartlyKnown] = {}
         self._ends: dict[str, tuple[float, float]] = {}

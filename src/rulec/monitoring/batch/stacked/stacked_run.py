@@ -69,7 +69,8 @@ class StackedRun:
         self._traces, self._n_traces = traces, len(traces.lengths)
         self._ready = ready_rules(traces.kind, rules)
         _check_objects(traces, rules.vocabulary)
-        self._stack = Stack(traces, self._ready.judged.vocabulary, self._ready.defaults)
+        vocabulary, defaults = self._ready.judged.vocabulary, self._ready.defaults
+        self._stack = Stack(traces, vocabulary, self._ready.meant, defaults)
         self._reader = StackReader(self._stack)
         self._reasons = StackedReasons(self._reader)
         self._close = _CloseLooks(traces.trace, rules)
