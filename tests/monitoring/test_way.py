@@ -1,4 +1,4 @@
-"""The way of a trace from `verify` to its verdict, as the page of its room draws it."""
+"""The way of a trace from `verify` to its verdict, as docs/architecture.md draws it."""
 
 import re
 import sys
@@ -12,14 +12,15 @@ ROOM = PACKAGE / "monitoring" / "batch"
 
 def drawn():
     """The functions on the way, each with its file."""
-    text = (ROOM / "README.md").read_text(encoding="utf-8")
-    steps = re.findall(r"^\d\. `([a-z_/]+\.py)`: ((?:.|\n(?!\d\.|\n))*)", text, re.MULTILINE)
-    return [
-        (file, name)
-        for file, what in steps
-        for name in re.findall(r"`([\w.]+)`", what)
-        if not name.endswith(".py")
-    ]
+    text = (PACKAGE.parents[1] / "docs/architecture.md").read_text(encoding="utf-8")
+    _, _, table = text.partition("## The way of one trace")
+    way, file = [], ""
+    for own, name in re.findall(
+        r"^\| (?:`(\S+)`[a-z ]*)?\| `(\S+)` \|", table.partition("\n## ")[0], re.M
+    ):
+        file = own or file
+        way.append((file, name))
+    return way
 
 
 def gone(call):
