@@ -16,20 +16,22 @@ from rulec.automata.thresholds import ThresholdScale
 from rulec.logic import formula as ltl
 from rulec.logic.fold import fold
 from rulec.monitoring.batch.columns.column_numbers import (
-    Mask,
     comparison_sides,
     numbers_between,
+    truth_between,
 )
 from rulec.monitoring.batch.stacked.met_values import KLEENE_COLUMNS, UNKNOWN, MetValues
 from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stacked_read import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
-from rulec.trace.partly_known.partly_known_values import Truth
+from rulec.trace.partly_known.partly_known_values import Number, Truth
 from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
 from rulec.vocabulary.partial_values import PartialValue
 from rulec.vocabulary.vocabulary_model import values_of
+
+_ANY_NUMBER = Number(np.float64("-inf"), np.float64("inf"))
 
 
 class Spots(NamedTuple):
@@ -224,26 +226,25 @@ class StackReader:
         return self.stack.pairs.places(first, second, spots.states)
 
     def _between(self, ready: ThresholdScale, spots: Spots) -> Numbers:
-        bounds = [(factor, *self._bounds(term, spots)) for factor, term in ready.read.terms]
-        return numbers_between(ready, bounds, len(spots.states))
+        terms = ready.read.terms
+        return numbers_between(ready, [(own, self._number(term, spots)) for own, term in terms])
 
-    def _bounds(
-        self, term: ltl.Term, spots: Spots
-    ) -> tuple[Array | float, Array | float, Mask | None]:
-        """The least and greatest value of a term, and where it is unknown (None for nowhere)."""
+    def _number(self, term: ltl.Term, spots: Spots) -> Number:
+        """The values of a quantity at the spots, or everywhere its default."""
         assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
         column = self.stack.column(term.name)
         if column is None:
             default = self.stack.default(term.name)
             if default is UNKNOWN_VALUE:
-                return 0.0, 0.0, np.True_
-            number = float(default)
-            return number, number, None
+                return _ANY_NUMBER
+            number = np.float64(default)
+            return Number(number, number)
         low = self._at(column.values, term.arguments, spots)
         high = low if column.upper is None else self._at(column.upper, term.arguments, spots)
         if column.unknown is None:
-            return low, high, None
-        return low, high, self._at(column.unknown, term.arguments, spots)
+            return Number(low, high)
+        dark = self._at(column.unknown, term.arguments, spots)
+        return Number(np.where(dark, -np.inf, low), np.where(dark, np.inf, high))
 
     def _counted(self, read: StackedRead, number: NumberRead, spots: Spots) -> Numbers:
         """The numbers of a count everywhere, over all objects or only those that variables name."""
@@ -288,14 +289,13 @@ class StackReader:
         return fold(formula, own)
 
     def _compared(self, comparison: ltl.Comparison, spots: Spots, about: str) -> Truth:
-        terms = []
+        parts = []
         for factor, term in comparison.terms:
             assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
-            own = (about,) * len(term.arguments)
-            terms.append((factor, ltl.QuantityTerm(term.name, own)))
-        sides = comparison_sides(tuple(terms), comparison.relation, comparison.limit)
-        numbers = self._between(sides.scale, spots)
-        return Truth(sides.every.take(numbers), sides.some.take(numbers))
+            own = ltl.QuantityTerm(term.name, (about,) * len(term.arguments))
+            parts.append((factor, self._number(own, spots)))
+        sides = comparison_sides(comparison.terms, comparison.relation, comparison.limit)
+        return truth_between(sides, parts)
 
     def _atom(self, atom: ltl.Atom, spots: Spots, arguments: tuple[str, ...]) -> Truth:
         declaration = self.stack.vocabulary.declarations[atom.name]
