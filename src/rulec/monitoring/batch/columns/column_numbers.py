@@ -66,8 +66,11 @@ def numbers_between(ready: ThresholdScale, summands: Summands) -> Numbers:
     low, high = digits_between(ready, summands)
     size = ready.read.size
     dtype = smallest_unsigned(size**2)
-    numbers: Array = low.astype(dtype) * dtype.type(size)
-    numbers += high.astype(dtype)
+    numbers: Array
+    if low is high:
+        numbers = low.astype(dtype) * dtype.type(size + 1)
+    else:
+        numbers = low.astype(dtype) * dtype.type(size) + high.astype(dtype)
     return numbers if numbers.ndim else int(numbers)
 
 
