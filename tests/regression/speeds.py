@@ -1,4 +1,4 @@
-"""Five speeds of a checkout, as ratios against another one, in turns in one run.
+"""Six speeds of a checkout, as ratios against another one, in turns in one run.
 
 ``python tests/regression/speeds.py OLDER NEWER [ROUNDS]`` prints for each path the least processor
 time (ms) of both, and how many times as long the newer one takes.
@@ -43,6 +43,9 @@ least(lambda: rulec.verify(trace, paper), 200)
     "recorded drives given as traces": """
 least(lambda: [rulec.verify(one, de) for one in traces], 5)
 """,
+    "recorded drives as JSON Lines": """
+least(lambda: list(rulec.verify_many(rulec.read_traces("{traces}"), de)), 10)
+""",
     "recorded drives": """
 least(lambda: list(rulec.verify_recording(following, de)), 10)
 """,
@@ -77,7 +80,7 @@ least(live, 5)
 def taken(checkout: Path, path: str, traces: Path) -> float:
     """The least processor time (ms) of a path in a process of its own; NaN if it fails."""
     beginning = BEGINNING.replace("{traces}", str(traces)).replace("{root}", str(CHECKOUT))
-    call = [python(checkout), "-c", beginning + PATHS[path]]
+    call = [python(checkout), "-c", beginning + PATHS[path].replace("{traces}", str(traces))]
     done = subprocess.run(call, env=environment(checkout), capture_output=True, text=True)
     if done.returncode:
         print(done.stderr, file=sys.stderr)

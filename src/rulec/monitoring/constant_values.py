@@ -115,16 +115,16 @@ def agreed_value(first: Any, second: Any) -> Any:
 def _filled(
     states: Sequence[State], name: str, stated: _Stated, present: Mapping[str, tuple[int, int]]
 ) -> Iterator[State]:
-    whole = 0, len(states) - 1
-    stretches = [
-        ([present.get(item, whole) for item in subject], subject, value)
-        for subject, (value, _) in stated.items()
-    ]
+    whole, stretches = (0, len(states) - 1), []
+    for subject, (value, _) in stated.items():
+        spans = [whole, *[present.get(item, whole) for item in subject]]
+        begins, ends = max(x for x, _ in spans), min(x for _, x in spans)
+        stretches.append((begins, ends, subject, value))
     for number, state in enumerate(states):
         given: Any = state.get(name)
         filled: Any = dict(given) if isinstance(given, Mapping) else given
-        for spans, subject, value in stretches:
-            if all(begins <= number <= ends for begins, ends in spans):
+        for begins, ends, subject, value in stretches:
+            if begins <= number <= ends:
                 if len(subject) == 1 and type(filled) is dict:
                     filled[subject[0]] = value
                 else:

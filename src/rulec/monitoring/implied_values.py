@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from operator import is_
 from typing import Any
@@ -12,7 +12,8 @@ from rulec.automata.thresholds import exact_step
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import in_steps
 from rulec.logic.fold import fold
-from rulec.logic.kleene import ObjectBinding, Unknown, evaluator_of
+from rulec.logic.kleene import Unknown, evaluator_of
+from rulec.monitoring.bindings import binding_of
 from rulec.monitoring.constant_values import values_in, with_constants
 from rulec.monitoring.state_view import StateView, put, value_in
 from rulec.monitoring.told_names import untold_names, with_meant, with_untold, words_meant
@@ -22,7 +23,7 @@ from rulec.trace.partly_known.temporal_operators import BitInstants
 from rulec.trace.trace_model import present_in
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
-from rulec.vocabulary.vocabulary_model import Meaning, choices
+from rulec.vocabulary.vocabulary_model import choices
 
 
 def with_derived_values(
@@ -115,11 +116,10 @@ class DefinedWords:
         """The trace of valid states, with the words where it does not tell them."""
         vocabulary = self._vocabulary
         for name in self._names:
-            meaning = vocabulary.meanings[name]
             types = vocabulary.declarations[name].parameters
             states = list(trace.states)
             for items in choices(types, trace.objects, vocabulary, f"`{name}`"):
-                for place, value in _values(name, meaning, items, _Given(trace, vocabulary)):
+                for place, value in _values(name, items, trace, vocabulary):
                     own = states[place]
                     states[place] = {**own, name: put(own.get(name), items, value)}
             trace = replace(trace, states=tuple(states))
@@ -151,57 +151,35 @@ def with_words_in_graph(graph: TraceGraph, vocabulary: Vocabulary) -> TraceGraph
     return replace(graph, states=tuple(layers), told=with_meant(graph.told, vocabulary))
 
 
-@dataclass(frozen=True, slots=True)
-class _Given:
-    """A trace, in whose states the meanings of words are sought."""
-
-    trace: Trace
-    vocabulary: Vocabulary
-
-    def truth(self, formula: ltl.Formula, binding: ObjectBinding, span: range) -> Truth[int]:
-        """The truth of a formula in a span of states, as bits from the first of these on."""
-        trace = self.trace
-        views = [
-            StateView(
-                trace.states[place],
-                present_in(place, trace.objects, trace.present),
-                self.vocabulary,
-            )
-            for place in span
-        ]
-
-        def proposition(asked: ltl.Proposition) -> Truth[int]:
-            evaluate, sure, possible = evaluator_of(asked), 0, 0
-            for place, view in enumerate(views):
-                value = evaluate(binding, view)
-                is_known = not isinstance(value, Unknown)
-                sure |= (value is True) << place
-                possible |= (value is True or not is_known) << place
-            return Truth(sure, possible)
-
-        ends = BitInstants(len(views), "cut" if trace.ends == "cut" else "over")
-        return fold(formula, ends.algebra(proposition))
-
-
 def _values(
-    name: str, meaning: Meaning, items: tuple[str, ...], given: _Given
+    name: str, items: tuple[str, ...], trace: Trace, vocabulary: Vocabulary
 ) -> list[tuple[int, Any]]:
     """The places of the states that do not tell a word of these objects, and its values."""
-    trace = given.trace
-    spans = [trace.present.get(item, (0, len(trace.states) - 1)) for item in items]
-    first = max((span[0] for span in spans), default=0)
-    last = min((span[1] for span in spans), default=len(trace.states) - 1)
-    span, declared = range(first, last + 1), given.vocabulary.declarations[name]
-    untold = replace(declared, default=None)
+    meaning = vocabulary.meanings[name]
+    binding = dict(zip(meaning.variables, items, strict=True))
+    own = binding_of(binding, trace.present, len(trace.states))
+    span = range(own.first, own.last + 1)
+    untold = replace(vocabulary.declarations[name], default=None)
     places = [x for x in span if value_in(trace.states[x], name, items, untold) is None]
     if not places:
         return []
+    objects, present = trace.objects, trace.present
+    views = [StateView(trace.states[x], present_in(x, objects, present), vocabulary) for x in span]
+
+    def proposition(asked: ltl.Proposition) -> Truth[int]:
+        evaluate, sure, possible = evaluator_of(asked), 0, 0
+        for place, view in enumerate(views):
+            value = evaluate(binding, view)
+            sure |= (value is True) << place
+            possible |= (value is True or isinstance(value, Unknown)) << place
+        return Truth(sure, possible)
+
+    ends = BitInstants(len(views), "cut" if trace.ends == "cut" else "over")
     formula = _in_steps(meaning.formula, exact_step(trace.step_s))
-    binding = dict(zip(meaning.variables, items, strict=True))
-    truth = given.truth(formula, binding, span)
+    truth = fold(formula, ends.algebra(proposition))
     values: list[tuple[int, Any]] = []
     for place in places:
-        sure, possible = (half >> place - first & 1 for half in (truth.sure, truth.possible))
+        sure, possible = (half >> place - own.first & 1 for half in (truth.sure, truth.possible))
         values.append((place, UNKNOWN if sure != possible else bool(sure)))
     return values
 

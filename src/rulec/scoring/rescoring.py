@@ -25,7 +25,7 @@ from rulec.extraction.recording_verdicts import (
     some_rules,
 )
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
-from rulec.monitoring.batch.verify_arrays import answers_contained
+from rulec.monitoring.batch.verify_arrays import answer_to, judge_contained
 from rulec.monitoring.verdict import (
     NotJudged,
     OpenVerdict,
@@ -252,7 +252,8 @@ def _since(
         for step, own in zip(steps, futures, strict=True)
     ]
     traces = stretches_of([own.trace for own in futures], stretches, some.names)
-    return answers_contained(traces, some.rulebook)
+    judged = judge_contained(traces, some.rulebook)
+    return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
 
 
 _Asked = Mapping[tuple[int, RuleFor], int]
@@ -265,9 +266,9 @@ def _answers(
     """The answer to each question; ``most`` as in ``_since``."""
     jobs = sorted({(n, step) for (n, _), step in asked.items()})
     answers = _since([step for _, step in jobs], [futures[n] for n, _ in jobs], some, most)
-    answer_to = dict(zip(jobs, answers, strict=True))
+    answered = dict(zip(jobs, answers, strict=True))
     for key, step in asked.items():
-        yield key, answer_to[key[0], step]
+        yield key, answered[key[0], step]
 
 
 def _about(

@@ -26,12 +26,12 @@ from rulec.monitoring.batch.joined.joined_columns import (
     joined_rows,
 )
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
-from rulec.monitoring.batch.stacked.stacked_run import check_judgeable
+from rulec.monitoring.batch.stacked.ready_rules import ready_rules
+from rulec.monitoring.batch.stacked.stacked_run import StackedRun
 from rulec.monitoring.batch.verify import (
     IRREGULAR,
     derived_trace,
     has_few_choices,
-    verdicts_on,
     verdicts_together,
 )
 from rulec.monitoring.bindings import Cast, types_of
@@ -102,7 +102,7 @@ def _verify_chunk(items: Sequence[Trace | RulecError], rulebook: CompiledRuleboo
                 kinds.setdefault(kind, []).append((place, trace))
     for kind, placed in kinds.items():
         with suppress(*IRREGULAR):
-            check_judgeable(kind, rulebook)
+            ready_rules(kind, rulebook)
             verdicts = verdicts_together([trace for _, trace in placed], rulebook)
             for (place, _), verdict in zip(placed, verdicts, strict=True):
                 answers[place] = verdict
@@ -166,7 +166,7 @@ def _fill(
     own = range(len(places)) if max(joined.n_objects) ** 2 > CHOICES.value() else ()
     if not all(has_few_choices(joined.objects_of(number), rulebook) for number in own):
         raise UnencodableError
-    for place, verdict in zip(places, verdicts_on(joined, rulebook), strict=True):
+    for place, verdict in zip(places, StackedRun(joined, rulebook).verdicts(), strict=True):
         answers[place] = verdict
 
 
@@ -203,7 +203,7 @@ def _cells(columns: TraceColumns, rulebook: CompiledRulebook) -> TraceCells | No
     cells = shared_states(columns, vocabulary)
     if cells is not None:
         rules = rulebook_for_trace(Trace("", columns.step_s, columns.objects, ()), rulebook)
-        check_judgeable(TraceKind(columns.step_s, "complete", None), rules)
+        ready_rules(TraceKind(columns.step_s, "complete", None), rules)
         check_objects(columns.objects, vocabulary)
         cast = Cast(columns.objects, vocabulary, columns.layout.n_steps, columns.present)
         if any(cast.has_many(types_of(rule)) for rule in rules.rules):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from itertools import chain
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -11,7 +10,6 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.by_states import judged_by_states, rulebook_for_trace
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_states import joined_states
-from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
 from rulec.monitoring.batch.stacked.stacked_run import StackedRun
 from rulec.monitoring.bindings import types_of
 from rulec.monitoring.constant_values import with_constants
@@ -83,18 +81,10 @@ def verdicts_together(
     These are found by halving.
     """
     try:
-        return verdicts_on(joined_states(traces, rulebook.vocabulary), rulebook)
+        return StackedRun(joined_states(traces, rulebook.vocabulary), rulebook).verdicts()
     except IRREGULAR:
         if len(traces) == 1:
             return [None]
         middle = len(traces) // 2
         halves = traces[:middle], traces[middle:]
         return [verdict for half in halves for verdict in verdicts_together(half, rulebook)]
-
-
-def verdicts_on(joined: JoinedTraces, rulebook: CompiledRulebook) -> list[Verdict | None]:
-    """The verdicts on traces laid end to end; None for irregular ones. Raises ``IRREGULAR``."""
-    return [
-        own and own.findings.verdict(number, joined.id_of(number), partial(joined.says, number))
-        for number, own in enumerate(StackedRun(joined, rulebook).judged())
-    ]

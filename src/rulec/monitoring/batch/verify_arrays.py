@@ -83,12 +83,6 @@ def judge_contained(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -
     return [_without_words(x, rulebook) if x.faults else next(whole) for x in traces]
 
 
-def answers_contained(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
-    """The answer to each trace by ``judge_contained``."""
-    judged = judge_contained(traces, rulebook)
-    return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
-
-
 def _judged(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> Sequence[Judged]:
     try:
         return judge_arrays(traces, rulebook)

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
 from rulec.logic import formula as ltl
-from rulec.monitoring.explain.observed_states import ObservedWord
+from rulec.monitoring.explain.observed_states import ObservedStates, ObservedWord
 
 
 def broken_stretch(
     formula: ltl.Formula,
     values: Mapping[ltl.Formula, list[bool]],
     word: ObservedWord,
-    decisive: int,
-    numbers: Sequence[int],
+    observed: ObservedStates,
 ) -> tuple[int, int]:
-    """The stretch around a state in which the body of an outermost always or never is broken.
+    """The stretch around the decisive state in which an outermost always or never is broken.
 
-    ``decisive`` is the index of that state in the ``word``. A forbidden
-    sequence of phases, such as overtaking, lasts from the latest state in which it can have begun
-    to the decisive one. The stretch ends where states, whose ``numbers`` are given, have been left
-    out.
+    A forbidden sequence of phases, such as overtaking, lasts from the latest state in which it can
+    have begun to the decisive one. The stretch ends where states have been left out.
     """
+    decisive, numbers = observed.decisive, observed.numbers
     for part, wanted in _bodies(formula):
         if not wanted and _has_phases(part):
             # The last phase may only require that something continues

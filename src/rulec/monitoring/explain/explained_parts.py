@@ -130,15 +130,14 @@ def parts_of(
     truths: Mapping[ltl.Formula, list[bool]],
     deciding: Mapping[ltl.Formula, int],
     observed: ObservedStates,
-    numbers: Sequence[int],
     *,
     turned: Mapping[ltl.Formula, int],
     depth: int = 0,
 ) -> Iterator[Part]:
     """A formula and its parts, as written and with bounds in steps, each before its operands.
 
-    For parts that decide, ``deciding`` has the index of the last state in which they do, among the
-    states with these ``numbers``. ``turned`` has the same for a comparison that ``turns``.
+    For parts that decide, ``deciding`` has the index of the last state in which they do; ``turned``
+    has the same for a comparison that ``turns``.
     """
     written, stepped = formulas
     margins: tuple[Margin | None, ...] = ()
@@ -148,7 +147,7 @@ def parts_of(
         index = turned.get(stepped, deciding.get(stepped))
         if margins and index is not None:
             margin = observed.margin(written, index)
-            measured = None if margin is None else (margin, numbers[index])
+            measured = None if margin is None else (margin, observed.numbers[index])
     yield Part(
         formula=written,
         depth=depth,
@@ -167,9 +166,7 @@ def parts_of(
         case _:
             operands = []
     for both in operands:
-        yield from parts_of(
-            both, truths, deciding, observed, numbers, turned=turned, depth=depth + 1
-        )
+        yield from parts_of(both, truths, deciding, observed, turned=turned, depth=depth + 1)
 
 
 def with_margins(

@@ -14,7 +14,6 @@ from rulec.diagnostics import RulecError
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import in_steps
 from rulec.logic.causes import instants_among
-from rulec.logic.semantics import Semantics
 from rulec.monitoring.bindings import Binding, binding_of
 from rulec.monitoring.explain.broken_stretch import broken_stretch, is_broken_before
 from rulec.monitoring.explain.explained_parts import (
@@ -159,75 +158,65 @@ def explain(
     observed = ObservedStates(
         [reader.view(number) for number in numbers],
         binding.objects,
-        [bisect_left(numbers, number) for number in states],
-        place,
-        lambda index: StateView(given.states[numbers[index]], {}, declared),
+        numbers,
+        shown=[bisect_left(numbers, number) for number in states],
+        decisive=place,
+        given=lambda index: StateView(given.states[numbers[index]], {}, declared),
     )
     whole = len(numbers) == len(stretch)
     repair = None
     if whole and repaired:
         repair = nearest_satisfying(rule.machine, observed.word(rule.machine))
-    subject = Explained(violation, rule, rulebook.vocabulary, rulebook.semantics, trace.step_s)
-    explanation = explanation_of(subject, observed, numbers, decided_by)
-    return replace(
-        explanation,
+    atoms = dict.fromkeys(ltl.atoms_of(rule.formula))
+    truths = {atom: observed.truths(atom) for atom in atoms}
+    word = ObservedWord(truths, len(numbers), rulebook.semantics)
+    formula = in_steps(rule.formula, exact_step(trace.step_s))
+    observations, parts, lasts = _evaluated(rule, formula, word, observed, decided_by)
+    return Explanation(
+        rule=rule,
+        violation=violation,
+        states=states,
+        decisive=decisive,
+        facts=observations,
+        parts=parts,
         repair=repair
         and tuple([replace(change, place=binding.first + change.place) for change in repair]),
+        vocabulary=rulebook.vocabulary,
+        lasts=lasts,
         looked_at=None if whole else _window(numbers, place),
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Explained:
-    """What is explained: a violation of a rule, in a trace with this step (s)."""
-
-    violation: Violation
-    rule: CompiledRule
-    vocabulary: Vocabulary
-    semantics: Semantics
-    step_s: float
-
-
-def explanation_of(
-    subject: Explained,
+def _evaluated(
+    rule: CompiledRule,
+    formula: ltl.Formula,
+    word: ObservedWord,
     observed: ObservedStates,
-    numbers: Sequence[int],
     decided_by: Mapping[str, Deciding],
-) -> Explanation:
-    """The explanation from observed states with these ``numbers``, without a repair."""
-    rule, semantics = subject.rule, subject.semantics
-    place, n_states = observed.decisive, len(numbers)
-    atoms = dict.fromkeys(ltl.atoms_of(rule.formula))
-    word = ObservedWord({atom: observed.truths(atom) for atom in atoms}, n_states, semantics)
-    formula = in_steps(rule.formula, exact_step(subject.step_s))
+) -> tuple[tuple[Observation, ...], tuple[Part, ...], tuple[int, int]]:
+    """The facts and the parts of a rule, and the first and last state in which it is broken.
+
+    The ``formula`` is the rule's, with bounds in steps.
+    """
+    place, n_states, numbers = observed.decisive, word.n_states, observed.numbers
     known = word.parts(formula)
     values = {part: column[:n_states] for part, column in known.items()}
-    first, last = broken_stretch(formula, values, word, place, numbers)
+    first, last = broken_stretch(formula, values, word, observed)
     early = is_broken_before(first, formula, values) and _is_violated_before(rule.machine, observed)
-    instants = instants_among(known, formula, n_states, semantics, first if early else 0)
+    instants = instants_among(known, formula, n_states, word.semantics, first if early else 0)
     deciding = {part: _last_until(place, at) for part, at in instants.items() if True in at}
     when = set() if rule.trigger is None else set(ltl.atoms_of(rule.trigger))
     turned = turning(formula, word, instants, observed, when=when)
-    states = tuple([numbers[index] for index in observed.shown])
     decided_at = {
         part.name: numbers[index] for part, index in deciding.items() if isinstance(part, ltl.Atom)
     }
-    return Explanation(
-        rule=rule,
-        violation=subject.violation,
-        states=states,
-        decisive=numbers[place],
-        facts=tuple(
-            with_margins(fact, decided_by, states, decided_at)
-            for fact in facts_of(word.truths, deciding.keys(), observed)
-        ),
-        parts=tuple(
-            parts_of((rule.formula, formula), values, deciding, observed, numbers, turned=turned)
-        ),
-        repair=None,
-        vocabulary=subject.vocabulary,
-        lasts=(numbers[first], numbers[last]),
-    )
+    states = [numbers[index] for index in observed.shown]
+    facts = [
+        with_margins(fact, decided_by, states, decided_at)
+        for fact in facts_of(word.truths, deciding.keys(), observed)
+    ]
+    parts = parts_of((rule.formula, formula), values, deciding, observed, turned=turned)
+    return tuple(facts), tuple(parts), (numbers[first], numbers[last])
 
 
 def _is_violated_before(machine: MealyMonitor, observed: ObservedStates) -> bool:

@@ -87,12 +87,13 @@ def known_value(value: _Known | Unknown) -> _Known:
 class ObservedStates:
     """States of a binding, all of whose values are known.
 
-    ``shown`` are the indices of the states to show, among them ``decisive``. ``given`` has for an
-    index the state of which it is a completion.
+    ``numbers`` are those in the trace, ``shown`` the indices of the states to show, among them
+    ``decisive``. ``given`` has for an index the state of which it is a completion.
     """
 
     views: Sequence[StateView]
     bound: Mapping[str, str]
+    numbers: Sequence[int]
     shown: Sequence[int]
     decisive: int
     given: Callable[[int], StateView]

@@ -13,8 +13,8 @@ from fractions import Fraction
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Indices
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.thresholds import exact_step
 from rulec.logic.bounds import in_steps
@@ -35,8 +35,6 @@ from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.resource_limits import LOOKBACK
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.value_display import short_repr
-
-Counts = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +159,7 @@ def _tally(truth: TraceTruth, watched: _Watched, outcomes: Mapping[Chosen, Outco
     return tally
 
 
-def _decided(choices: ChosenObjects, left: dict[Chosen, Outcome]) -> tuple[Counts, list[Outcome]]:
+def _decided(choices: ChosenObjects, left: dict[Chosen, Outcome]) -> tuple[Indices, list[Outcome]]:
     """The rows that are violated or open, with their outcomes, which are removed from ``left``."""
     if not left:
         return np.zeros(0, dtype=np.intp), []
@@ -181,14 +179,14 @@ def _decided(choices: ChosenObjects, left: dict[Chosen, Outcome]) -> tuple[Count
 class _Tally:
     """Sums over the choices of objects of one rule, for each trace."""
 
-    def __init__(self, last: Counts) -> None:
+    def __init__(self, last: Indices) -> None:
         n_traces, n_states = len(last), int(last.max()) + 1
         self._there = np.arange(n_states) <= last[:, None]
         self._exposed = np.zeros((2, n_traces, n_states), dtype=bool)
         self._opportunities = np.zeros((2, n_traces), dtype=np.intp)
         self._violated = np.zeros((2, n_traces), dtype=np.intp)
 
-    def add_whole(self, trace: Counts, first: Counts, last: Counts) -> None:
+    def add_whole(self, trace: Indices, first: Indices, last: Indices) -> None:
         """Count one opportunity for each choice of objects, for as long as they are present."""
         n_traces, n_states = self._there.shape
         edges = np.zeros((n_traces, n_states + 1), dtype=np.intp)
@@ -211,10 +209,10 @@ class _Tally:
 
     def violated_in(
         self,
-        trace: Counts,
+        trace: Indices,
         opportunities: Sequence[Stretches],
-        breached: Counts,
-        is_open: NDArray[np.bool_],
+        breached: Indices,
+        is_open: Flags,
     ) -> None:
         """Count the violated opportunities of rows; the verdict says whether there is one."""
         surely = np.where(is_open, 0, np.maximum(breached[0], 1))

@@ -17,7 +17,7 @@ from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
 from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.implied_values import with_defined_words, with_derived_values
 from rulec.monitoring.state_view import value_in
-from rulec.monitoring.told_names import untold_names, with_untold
+from rulec.monitoring.told_names import untold_names, with_untold, words_meant
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.trace import Trace
 from rulec.trace.partly_known.column_values import partly_known
@@ -27,9 +27,8 @@ from rulec.trace.partly_known.partly_known_values import (
 )
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import Array
-from rulec.vocabulary import Declaration, Enumeration, Vocabulary
+from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
-from rulec.vocabulary.vocabulary_model import least_value
 from rulec.vocabulary.written_numbers import WrittenNumber
 
 
@@ -60,7 +59,8 @@ class NameTables:
         self.vocabulary = with_untold(vocabulary, untold) if untold else vocabulary
         declared = self.vocabulary.declarations.items()
         dark = {name: UNKNOWN for name, item in declared if item.default is None}
-        self._traces, self._stack = traces, Stack(traces, self.vocabulary, dark)
+        meant = words_meant(self.vocabulary, traces.kind.told)
+        self._traces, self._stack = traces, Stack(traces, self.vocabulary, meant, dark)
         self._n_objects = traces.n_objects[0]
         self.objects = tuple(traces.names[: self._n_objects])
         self.types = tuple(traces.types[: self._n_objects])
@@ -94,30 +94,16 @@ class NameTables:
         states = np.minimum(np.maximum(states, since[:, None]), until[:, None])
         first, second = (own.repeat(self.n_states) for own in rows.T)
         places = stack.pairs.places(first, second, states.ravel())
-        return self._at(name, places.reshape(states.shape))
+        return self._stack.named(name, places.reshape(states.shape))
 
     def _rows(self, name: str, begins: Indices, spans: Indices) -> NameValues:
         """Rows of values that begin at these places, for states from the first to the last."""
         first, last = spans[:, :1], spans[:, 1:]
         within = np.minimum(np.maximum(self._states, first), last)
-        rows = self._at(name, begins[:, None] + within - first)
+        rows = self._stack.named(name, begins[:, None] + within - first)
         if not self.vocabulary.declarations[name].constant:
             return rows
         return _constant(rows, within == self._states)
-
-    def _at(self, name: str, places: Indices) -> NameValues:
-        """The values at these places of a name's column; its default if it has none."""
-        declaration, column = self.vocabulary.declarations[name], self._stack.column(name)
-        if column is None:
-            default, is_known = _default_of(declaration)
-            values: Array = np.full(places.shape, default, dtype=type(default))
-            unknown = None if is_known else np.ones(places.shape, dtype=bool)
-            return partly_known(declaration, values, values, unknown)
-        values = column.values[places]
-        # One array for both ends says that they are equal
-        upper = values if column.upper is None else column.upper[places]
-        unknown = None if column.unknown is None else column.unknown[places]
-        return partly_known(declaration, values, upper, unknown)
 
     def _by_states(self, name: str, rows: Indices) -> NameValues:
         """The rows of a name about more than two objects."""
@@ -130,9 +116,9 @@ class NameTables:
             values += [*own, *own[-1:] * (self.n_states - len(own))]
         shape = len(rows), self.n_states
         column = encode_partly_known([UNKNOWN if x is None else x for x in values], declaration)
-        low, high, dark = (None if own is None else own.reshape(shape) for own in column)
-        assert low is not None, "it has values"
-        return partly_known(declaration, low, low if high is None else high, dark)
+        column = column.at(np.arange(len(values)).reshape(shape))
+        upper = column.values if column.upper is None else column.upper
+        return partly_known(declaration, column.values, upper, column.unknown)
 
 
 def tables_of(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> NameTables:
@@ -167,21 +153,6 @@ def _plain(state: Mapping[str, Any], trace: Trace, vocabulary: Vocabulary) -> di
     about = {name: own.parameters for name, own in vocabulary.declarations.items()}
     few = (name for name in state if name in about and len(about[name]) <= 2)
     return {name: plain(state[name], about[name]) for name in few}
-
-
-def _default_of(declaration: Declaration | None) -> tuple[bool | float | int, bool]:
-    """A name's default, encoded as in columns, and whether it has one.
-
-    If not, an arbitrary value.
-    """
-    if declaration is None:
-        return False, False
-    default: Any = declaration.default
-    is_known = default is not None and default is not UNKNOWN
-    value = default if is_known else least_value(declaration)
-    if isinstance(declaration, Enumeration):
-        return declaration.values.index(str(value)), is_known
-    return value if isinstance(value, bool) else float(value), is_known
 
 
 def _constant(rows: NameValues, there: Flags) -> NameValues:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,16 +13,10 @@ from rulec.array_types import Indices
 from rulec.diagnostics import SourceLocation
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import looks_elsewhere
-from rulec.logic.fold import fold
 from rulec.logic.formula import BinaryOperator, Formula, chain_of
 from rulec.logic.free_names import variables_of
 from rulec.logic.semantics import Semantics, steps_to_settle
-from rulec.monitoring.batch.columns.column_numbers import (
-    ComparisonSides,
-    comparison_sides,
-    proposition_truth,
-    truth_between,
-)
+from rulec.monitoring.batch.columns.column_formulas import ColumnFormulas
 from rulec.monitoring.moments.name_tables import NameTables, at_places
 from rulec.resource_limits import LOOKBACK
 from rulec.rulebook.rulebook_model import Variable
@@ -36,49 +31,35 @@ from rulec.trace.trace_model import Ending
 from rulec.vocabulary.vocabulary_model import choices
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RowEvaluation:
-    """The evaluation of formulas on some rows.
+@dataclass(frozen=True, eq=False)
+class RowFormulas(ColumnFormulas):
+    """The truth of formulas on some rows.
 
     ``bound`` has the objects of variables, per row or for all rows; ``states`` are the traces'
-    states in the columns, by row or the same for all rows. ``comparisons`` caches the evaluated
-    ones by identity, since hashing one takes longer than evaluating it. ``trace`` is the trace of
-    each row, None if there is only one.
+    states in the columns, by row or the same for all rows. ``trace`` is the trace of each row, None
+    if there is only one.
     """
 
     tables: NameTables
-    stretches: RowStretches
     states: Indices
     bound: Mapping[str, Indices]
-    comparisons: dict[int, ComparisonSides]
     trace: Indices | None = None
 
-    def of(self, formula: ltl.Formula) -> Truth:
-        """The truth of a formula."""
-        return fold(formula, self.stretches.algebra(self._proposition, self._identity))
-
-    def _identity(self, same: ltl.Same) -> Truth:
-        return Truth.known((self.bound[same.left] == self.bound[same.right])[:, None])
-
-    def _proposition(self, proposition: ltl.Proposition) -> Truth:
-        if isinstance(proposition, ltl.Comparison):
-            return self._comparison(proposition)
-        values = self._values(proposition.name, proposition.arguments)
-        declaration = self.tables.vocabulary.declarations[proposition.name]
-        return proposition_truth(values, proposition, declaration)
-
-    @property
-    def _shows_all(self) -> bool:
-        """Whether the columns are exactly the states of the traces."""
+    @cached_property
+    def _chosen_states(self) -> Indices | None:
+        """The states in the columns; None if these are exactly the states of the traces."""
         n_states = self.tables.n_states
         if self.states.ndim > 1 or self.states.size != n_states:
-            return False
-        return int(self.states[-1]) == n_states - 1
+            return self.states
+        return None if int(self.states[-1]) == n_states - 1 else self.states
 
-    def _values(self, name: str, arguments: tuple[str, ...]) -> NameValues:
+    def identity(self, same: ltl.Same) -> Truth:
+        """Where two variables stand for the same object."""
+        return Truth.known((self.bound[same.left] == self.bound[same.right])[:, None])
+
+    def values(self, name: str, arguments: tuple[str, ...]) -> NameValues:
         """The values of a name for the objects of variables."""
-        tables = self.tables
-        states = None if self._shows_all else self.states
+        tables, states = self.tables, self._chosen_states
         if not arguments:
             return at_places(tables.world(name), self.trace, states)
         if len(arguments) == 1:
@@ -86,33 +67,22 @@ class RowEvaluation:
         several = np.broadcast_arrays(*[self.bound[argument] for argument in arguments])
         return at_places(tables.about_several(name, np.stack(several, axis=1)), None, states)
 
-    def _comparison(self, comparison: ltl.Comparison) -> Truth:
-        ready = self.comparisons.get(id(comparison))
-        if ready is None:
-            ready = comparison_sides(comparison.terms, comparison.relation, comparison.limit)
-            self.comparisons[id(comparison)] = ready
-        parts = [(factor, self._term(term)) for factor, term in comparison.terms]
-        return truth_between(ready, parts)
-
-    def _term(self, term: ltl.Term) -> Number:
-        if isinstance(term, ltl.QuantityTerm):
-            number = self._values(term.name, term.arguments)
-            assert isinstance(number, Number), "the formula has been checked"
-            return number
+    def counted(self, count: ltl.Count) -> Number:
+        """How many objects count in each state."""
         nobody = np.zeros((1, self.states.shape[-1]), dtype=np.int64)
-        count = Number(nobody, nobody)
-        vocabulary, spans = self.tables.vocabulary, self.tables.spans
-        for place, kind in enumerate(self.tables.types):
-            if vocabulary.is_subtype(kind, term.type):
+        number = Number(nobody, nobody)
+        tables, spans = self.tables, self.tables.spans
+        for place, kind in enumerate(tables.types):
+            if self.vocabulary.is_subtype(kind, count.type):
                 item = np.array([place])
                 if self.trace is not None:
-                    item = self.trace * len(self.tables.types) + place
+                    item = self.trace * len(tables.types) + place
                 first, last = spans[item, 0, None], spans[item, 1, None]
                 there = Truth.known((self.states >= first) & (self.states <= last))
-                inner = replace(self, bound={**self.bound, term.variable: item})
-                counts = inner.of(term.body) & there
-                count += Number(counts.sure, counts.possible)
-        return count
+                inner = replace(self, bound={**self.bound, count.variable: item})
+                counts = inner.of(count.body) & there
+                number += Number(counts.sure, counts.possible)
+        return number
 
 
 MOST_ENTRIES = 1 << 22
@@ -174,7 +144,6 @@ class ReadyFormula:
             for part in chain_of(BinaryOperator.AND, formula)
             if next(variables_of(part), None) is None and not looks_elsewhere(part)
         ]
-        self.comparisons: dict[int, ComparisonSides] = {}
 
 
 class TraceTruth:
@@ -228,7 +197,7 @@ class TraceTruth:
             states = np.minimum(states, last[:1] if (last == last[0]).all() else last[:, None])
         state = np.arange(states.shape[-1])
         stretches = RowStretches(first[:, None], end[:, None], len(state), self._ends)
-        truth = self._evaluation(ready, stretches, states, own).of(ready.formula)
+        truth = self._evaluation(stretches, states, own).of(ready.formula)
         there = (state >= first[:, None]) & (state <= end[:, None])
         return FormulaTruth(own, rows, last, truth & Truth.known(there))
 
@@ -242,7 +211,7 @@ class TraceTruth:
         stretches = RowStretches(np.zeros_like(last), last, len(states), self._ends)
         nobody = np.empty((tables.n_traces, 0), dtype=np.intp)
         chosen = ChosenObjects((), np.arange(tables.n_traces), nobody)
-        evaluation = self._evaluation(ready, stretches, states, chosen)
+        evaluation = self._evaluation(stretches, states, chosen)
         result = np.ones(tables.n_traces, dtype=bool)
         for part in ready.world_parts:
             result &= (evaluation.of(part).possible & (states <= last)).any(axis=1)
@@ -250,16 +219,15 @@ class TraceTruth:
 
     def _evaluation(
         self,
-        ready: ReadyFormula,
         stretches: RowStretches,
         states: Indices,
         chosen: ChosenObjects,
-    ) -> RowEvaluation:
-        return RowEvaluation(
-            self.tables,
+    ) -> RowFormulas:
+        return RowFormulas(
+            self.tables.vocabulary,
             stretches,
+            self.tables,
             states,
             dict(zip(chosen.variables, chosen.items.T, strict=True)),
-            ready.comparisons,
             trace=chosen.trace if self.tables.n_traces > 1 else None,
         )

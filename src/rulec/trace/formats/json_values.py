@@ -19,6 +19,8 @@ from rulec.vocabulary.written_numbers import WrittenNumber, number_written
 
 BOUNDS = frozenset({"from", "to"})
 
+_NUMBERS = frozenset({int, float, WrittenNumber})
+
 _DIGIT = ord("0")
 _DIGITS = bytes(_DIGIT if chr(byte) in "0123456789" else 32 for byte in range(256))
 _MANY = b"0" * 16
@@ -35,23 +37,36 @@ def from_json(state: Mapping[str, Any], objects: Collection[str]) -> State:
     ``objects``. Raises ValueError, saying what is wrong, if such an interval is invalid.
     """
     named = BOUNDS.intersection(objects)
-    return {name: _value_of(value, name, named) for name, value in state.items()}
+    read = dict(state)
+    for name, value in state.items():
+        if value is None:
+            read[name] = UNKNOWN
+        elif type(value) is dict:
+            read[name] = _of_object(value, name, named)
+    return read
 
 
-def _value_of(value: Any, name: str, named: frozenset[str]) -> Any:
-    if value is None:
-        return UNKNOWN
-    if type(value) is not dict:
-        return value
-    if value and value.keys() <= BOUNDS and not value.keys() <= named:
-        low, high = value.get("from"), value.get("to")
-        if not all(type(end) in (int, float, WrittenNumber) for end in (low, high)):
-            raise ValueError(f"`{name}` is an interval without a number for `from` or `to`")
-        try:
-            return Interval(low, high)  # type: ignore[arg-type]
-        except ValueError as wrong:
-            raise ValueError(f"`{name}`: {wrong}") from None
-    return {item: _value_of(inner, name, named) for item, inner in value.items()}
+def _of_object(given: dict[str, Any], name: str, named: frozenset[str]) -> Any:
+    """What a JSON object says of a name: an interval, or what it is for each object."""
+    if given and given.keys() <= BOUNDS and not given.keys() <= named:
+        return _interval(given, name)
+    read = given.copy()
+    for item, value in given.items():
+        if value is None:
+            read[item] = UNKNOWN
+        elif type(value) is dict:
+            read[item] = _of_object(value, name, named)
+    return read
+
+
+def _interval(given: dict[str, Any], name: str) -> Interval:
+    low, high = given.get("from"), given.get("to")
+    if type(low) not in _NUMBERS or type(high) not in _NUMBERS:
+        raise ValueError(f"`{name}` is an interval without a number for `from` or `to`")
+    try:
+        return Interval(low, high)  # type: ignore[arg-type]
+    except ValueError as wrong:
+        raise ValueError(f"`{name}`: {wrong}") from None
 
 
 def to_json(state: State) -> dict[str, Any]:

@@ -70,7 +70,8 @@ class ColumnReader:
         key = (read.terms, read.thresholds, *sorted(chosen.items()))
         if key not in self._known:
             summands = [(factor, self._summand(term, chosen)) for factor, term in read.terms]
-            self._known[key] = digits_of(ready, summands, self.columns.layout.n_states)
+            n_states = self.columns.layout.n_states
+            self._known[key] = np.broadcast_to(digits_of(ready, summands), n_states)
         return self._known[key]
 
     def _summand(self, term: ltl.Term, bound: ObjectBinding) -> Array | float:

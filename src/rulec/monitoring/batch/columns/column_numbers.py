@@ -16,22 +16,18 @@ from rulec.automata.thresholds import ThresholdScale, exact, scale
 from rulec.logic import formula as ltl
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace.partly_known.partly_known_values import (
-    EnumeratedChoice,
-    NameValues,
     Number,
     Truth,
 )
 from rulec.trace.trace_columns import Array, smallest_unsigned
-from rulec.vocabulary import Declaration, Enumeration, Quantity
-from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 
 Mask = NDArray[np.bool_] | np.bool_
 
 Summand = tuple[Fraction, Array | float]
-"""A coefficient with a column of numbers (floats or integers), or with one number for all states.
+"""A coefficient with a column of numbers (floats or integers), or with one number for all."""
 
-
-"""
+Summands = Sequence[tuple[Fraction, Number]]
+"""Coefficients with numbers that are known between two ends."""
 
 _UNIT = 2.0**-52
 """Twice the relative error of a single rounding."""
@@ -40,103 +36,79 @@ _TINY = 1e-300
 """An error bound that covers results too small to be normal floats."""
 
 
-def digits_of(
-    ready: ThresholdScale, summands: Sequence[Summand], n_states: int, ignored: Mask = np.False_
-) -> Array:
-    """The number of thresholds passed in each state; arbitrary where the state is ignored."""
+def digits_of(ready: ThresholdScale, summands: Sequence[Summand]) -> Array:
+    """The number of thresholds passed at each place; arbitrary where a sum is not finite."""
     match ready.read.terms:
         case ((_, ltl.Count()),):
             ((_, counted),) = summands
             return _digits_of_count(ready.read, np.asarray(counted))
     if ready.quantity is None:
-        return _digits_of_sum(ready.read, summands, n_states, ignored)
-    ((_, numbers),) = summands
-    if not isinstance(numbers, np.ndarray):
-        return np.full(n_states, ready.digit(numbers), dtype=smallest_unsigned(ready.read.size))
+        return _digits_of_sum(ready.read, summands)
+    numbers = np.asarray(summands[0][1])
     digits = np.zeros(numbers.shape, dtype=smallest_unsigned(ready.read.size))
     for floor in ready.floors:
         digits += (numbers >= floor).view(np.uint8)
     return digits
 
 
-Bounds = tuple[Fraction, Array | float, Array | float, Mask | None]
-"""A coefficient, its term's least and greatest value, and the mask where these are unknown."""
+def digits_between(ready: ThresholdScale, summands: Summands) -> tuple[Array, Array]:
+    """The least and the greatest digit of a sum; the same array if it is known."""
+    lows = [(factor, own.low if factor > 0 else own.high) for factor, own in summands]
+    low = digits_of(ready, lows)
+    if all(own.low is own.high for _, own in summands):
+        return low, low
+    highs = [(factor, own.high if factor > 0 else own.low) for factor, own in summands]
+    return low, digits_of(ready, highs)
 
 
-def numbers_between(ready: ThresholdScale, bounds: Iterable[Bounds], n_states: int) -> Numbers:
-    """The numbers, as in ``meanings_of``, of a sum whose terms have known bounds."""
-    lows: list[Summand] = []
-    highs: list[Summand] = []
-    unknown: Mask | None = None
-    same = True
-    for factor, low, high, dark in bounds:
-        same &= low is high
-        least, most = (high, low) if factor.numerator < 0 else (low, high)
-        lows.append((factor, least))
-        highs.append((factor, most))
-        if dark is not None:
-            unknown = dark if unknown is None else unknown | dark
+def numbers_between(ready: ThresholdScale, summands: Summands) -> Numbers:
+    """The numbers, as in ``StackedRead.meanings``, of a sum; one number if all are equal."""
+    low, high = digits_between(ready, summands)
     size = ready.read.size
-    if unknown is not None and unknown.all():
-        return size - 1
-    ignored = np.False_ if unknown is None else unknown
-    low_digits = digits_of(ready, lows, n_states, ignored)
-    high_digits = low_digits if same else digits_of(ready, highs, n_states, ignored)
     dtype = smallest_unsigned(size**2)
-    numbers: Array = low_digits.astype(dtype) * dtype.type(size)
-    numbers += high_digits.astype(dtype)
-    if unknown is not None:
-        numbers[unknown] = size - 1
-    return numbers
+    numbers: Array
+    if low is high:
+        numbers = low.astype(dtype) * dtype.type(size + 1)
+    else:
+        numbers = low.astype(dtype) * dtype.type(size) + high.astype(dtype)
+    return numbers if numbers.ndim else int(numbers)
 
 
-def _digits_of_sum(
-    read: NumberRead,
-    summands: Sequence[Summand],
-    n_states: int,
-    ignored: Mask,
-) -> Array:
-    """For each state the number of the read's thresholds that the sum passes.
-
-    The number is arbitrary where the state is ignored.
-    """
-    total = np.zeros(n_states)
-    size = np.zeros(n_states)
+def _digits_of_sum(read: NumberRead, summands: Sequence[Summand]) -> Array:
+    """For each place the number of the read's thresholds that the sum passes."""
+    spread = np.broadcast_arrays(*[numbers for _, numbers in summands])
+    parts = [(factor, own.ravel()) for (factor, _), own in zip(summands, spread, strict=True)]
+    total = np.zeros(spread[0].size)
+    size, is_finite = np.zeros(len(total)), np.ones(len(total), dtype=bool)
     with np.errstate(all="ignore"):
-        for coefficient, numbers in summands:
+        for coefficient, numbers in parts:
             part = _nearest(coefficient) * np.asarray(numbers, dtype=np.float64)
             total += part
             size += np.abs(part)
+            is_finite &= np.isfinite(numbers)
         # Each part: its decimal, its coefficient, the product; then the sums, and the limit.
-        error = size * ((len(summands) + 4) * _UNIT) + _TINY
-        digits = np.zeros(n_states, dtype=smallest_unsigned(read.size))
+        error = size * ((len(parts) + 4) * _UNIT) + _TINY
+        digits = np.zeros(len(total), dtype=smallest_unsigned(read.size))
         unclear = ~np.isfinite(total + error)
         for threshold in read.thresholds:
             limit = _nearest(threshold.limit)
             away = total - limit
             digits += away > 0
             unclear |= ~(np.abs(away) > error + abs(limit) * _UNIT)
-    # The same few numbers are often at a limit
+    # The same few numbers are often at a limit; a sum with an end that is not known has none
     known: dict[tuple[float, ...], int] = {}
-    for state in (unclear & ~ignored).nonzero()[0].tolist():
-        own = _numbers_in(summands, state)
+    for place in (unclear & is_finite).nonzero()[0].tolist():
+        own = tuple([numbers[place].item() for _, numbers in parts])
         if own not in known:
             known[own] = read.digit(_exactly(summands, own))
-        digits[state] = known[own]
-    return digits
+        digits[place] = known[own]
+    return digits.reshape(spread[0].shape)
 
 
 def _digits_of_count(read: NumberRead, counted: Array) -> Array:
     """The number of the read's thresholds that the number of objects passes in each state."""
     digits = [read.digit(Fraction(n)) for n in range(int(counted.max(initial=0)) + 1)]
     return np.array(digits, dtype=smallest_unsigned(read.size)).take(counted)
-
-
-def _numbers_in(summands: Sequence[Summand], state: int) -> tuple[float, ...]:
-    return tuple(
-        numbers[state].item() if isinstance(numbers, np.ndarray) else numbers
-        for _, numbers in summands
-    )
 
 
 def _exactly(summands: Sequence[Summand], numbers: Sequence[float]) -> Fraction:
@@ -184,36 +156,12 @@ def comparison_sides(
     )
 
 
-def proposition_truth(values: NameValues, asked: ltl.Atom, declaration: Declaration) -> Truth:
-    """The truth of a proposition from the values of the signal or enumeration that it names."""
-    if isinstance(values, EnumeratedChoice):
-        assert isinstance(declaration, Enumeration), "its values are choices"
-        assert asked.value is not None, "the formula has been checked"
-        return values.equals(declaration.values.index(asked.value))
-    assert isinstance(values, Truth), "the formula has been checked"
-    return values
-
-
-def truth_between(ready: ComparisonSides, parts: Sequence[tuple[Fraction, Number]]) -> Truth:
+def truth_between(ready: ComparisonSides, summands: Summands) -> Truth:
     """The truth of a comparison whose terms have these coefficients and values."""
-    lows = [(factor, part.low if factor > 0 else part.high) for factor, part in parts]
-    highs = [(factor, part.high if factor > 0 else part.low) for factor, part in parts]
-    low = _side_of(ready.scale, lows)
-    if all(lower is upper for (_, lower), (_, upper) in zip(lows, highs, strict=True)):
+    low, high = digits_between(ready.scale, summands)
+    if low is high:
         return Truth.known(ready.every.diagonal()[low])
-    high = _side_of(ready.scale, highs)
     return Truth(ready.every[low, high], ready.some[low, high])
-
-
-def _side_of(ready: ThresholdScale, summands: list[tuple[Fraction, Array]]) -> Array:
-    """For each place the side of the limit that a sum is on."""
-    if ready.quantity is not None:
-        return digits_of(ready, summands, 0)
-    spread = np.broadcast_arrays(*[numbers for _, numbers in summands])
-    parts = [(factor, own.ravel()) for (factor, _), own in zip(summands, spread, strict=True)]
-    # A sum with an end that is not known has none either
-    ignored: Mask = np.logical_or.reduce([~np.isfinite(numbers) for _, numbers in parts])
-    return digits_of(ready, parts, parts[0][1].size, ignored).reshape(spread[0].shape)
 
 
 def alike_places(columns: Iterable[NDArray[Any]], n_places: int) -> NDArray[np.intp]:
@@ -224,22 +172,3 @@ def alike_places(columns: Iterable[NDArray[Any]], n_places: int) -> NDArray[np.i
         codes += group_of * (int(codes.max(initial=0)) + 1)
         group_of = np.unique(codes, return_inverse=True)[1]
     return group_of
-
-
-def partial_values(
-    values: Array,
-    upper: Array | None,
-    unknown: NDArray[np.bool_] | None,
-    declaration: Declaration,
-) -> list[PartialValue | None]:
-    """The values of states, given as columns of values or places, of upper bounds, and of flags."""
-    cells: list[Any] = values.tolist()
-    if isinstance(declaration, Enumeration):
-        cells = [declaration.values[place] for place in cells]
-    elif isinstance(declaration, Quantity) and upper is not None:
-        ends = zip(cells, upper.tolist(), strict=True)
-        cells = [low if low == high else Interval(low, high) for low, high in ends]
-    if unknown is not None:
-        for place in unknown.nonzero()[0].tolist():
-            cells[place] = UNKNOWN
-    return cells

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.monitoring.batch.columns.column_numbers import partial_values
+from rulec.monitoring.batch.columns.encoded_columns import PartlyKnown
 from rulec.trace import Trace
 from rulec.trace.trace_columns import Array, TraceCells, TraceColumns, smallest_unsigned
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
@@ -74,13 +74,9 @@ def states_at(
     steps = (columns.layout.starts.searchsorted(places, side="right") - 1).tolist()
     states: list[dict[str, Any]] = [{} for _ in steps]
     for (name, items), values in columns.values.items():
-        upper, unknown = columns.upper.get((name, items)), columns.unknown.get((name, items))
-        own_values = partial_values(
-            values.take(places),
-            None if upper is None else upper.take(places),
-            None if unknown is None else unknown.take(places),
-            vocabulary.declarations[name],
-        )
+        key = name, items
+        column = PartlyKnown(values, columns.upper.get(key), columns.unknown.get(key))
+        own_values = column.at(places).decoded(vocabulary.declarations[name])
         since, until = _stretch(columns, items)
         for state, step, value in zip(states, steps, own_values, strict=True):
             if since <= step <= until:

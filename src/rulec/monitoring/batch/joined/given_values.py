@@ -29,10 +29,8 @@ class GivenValues(NamedTuple):
 
     def part(self, kept: Flags) -> GivenValues:
         """Some of the values."""
-        values, upper, unknown = (None if x is None else x[kept] for x in self.column)
-        assert values is not None, "there are some"
         objects = tuple(own[kept] for own in self.objects)
-        return GivenValues(self.states[kept], objects, PartlyKnown(values, upper, unknown))
+        return GivenValues(self.states[kept], objects, self.column.at(kept))
 
 
 def piece_of(given: Mapping[str, Sequence[GivenValues]], places: TracePlaces) -> JoinedPiece:
@@ -58,11 +56,11 @@ def piece_of(given: Mapping[str, Sequence[GivenValues]], places: TracePlaces) ->
     lengths = places.n_states, int(places.starts[-1]), int(pairs.starts[-1])
     for declaration, parts in named:
         arity = len(declaration.parameters)
-        column, absent = _laid_out(parts, [_at(x, places, pairs) for x in parts], lengths[arity])
-        if absent is not None and declaration.constant:
+        column = _laid_out(parts, [_at(x, places, pairs) for x in parts], lengths[arity])
+        if column.missing is not None and declaration.constant:
             raise UnencodableError  # a state that lacks it has the value of the others
         suits = places.of_type(declaration.parameters[0]) if arity == 1 else None
-        columns.add_encoded(column, declaration, suits, absent)
+        columns.add_encoded(column, declaration, suits)
     piece = columns.piece(len(places.types), pairs.objects)
     for cause, effects in vocabulary.implied.items():
         if any(_lacks(piece, cause, effect) for effect in effects):
@@ -105,27 +103,23 @@ def _at(part: GivenValues, places: TracePlaces, pairs: ObjectPairs) -> Indices:
     return at
 
 
-def _laid_out(
-    parts: Sequence[GivenValues], at: Sequence[Indices], length: int
-) -> tuple[PartlyKnown, Flags | None]:
-    """The column of these values, and where it has none."""
+def _laid_out(parts: Sequence[GivenValues], at: Sequence[Indices], length: int) -> PartlyKnown:
+    """The column of these values, of which some may be missing."""
     given = [part.column for part in parts]
     values: Array = np.zeros(length, dtype=np.result_type(*[own.values for own in given]))
-    absent, unknown = np.ones(length, dtype=bool), np.zeros(length, dtype=bool)
+    missing, unknown = np.ones(length, dtype=bool), np.zeros(length, dtype=bool)
     for own, where in zip(given, at, strict=True):
-        values[where], absent[where] = own.values, False
+        values[where], missing[where] = own.values, False
         if own.unknown is not None:
             unknown[where] = own.unknown
-    if np.count_nonzero(absent) + sum(map(len, at)) != length:
+    if np.count_nonzero(missing) + sum(map(len, at)) != length:
         raise UnencodableError  # something is said twice
     upper = values.copy() if any(own.upper is not None for own in given) else None
     for own, where in zip(given, at, strict=True):
         if upper is not None and own.upper is not None:
             upper[where] = own.upper
-    return (
-        PartlyKnown(values, upper, unknown if unknown.any() else None),
-        absent if absent.any() else None,
-    )
+    flags = [part if part.any() else None for part in (unknown, missing)]
+    return PartlyKnown(values, upper, *flags)
 
 
 def _lacks(piece: JoinedPiece, cause: str, effect: str) -> bool:

@@ -163,7 +163,7 @@ def _encoded(column: Column, rows: Indices, name: str, vocabulary: Vocabulary) -
     declaration = vocabulary.declarations.get(name)
     if declaration is None:
         raise UnencodableError
-    return PartlyKnown(_values(column, rows, declaration), None, None)
+    return PartlyKnown(_values(column, rows, declaration))
 
 
 def _values(column: Column, rows: Indices, declaration: Declaration) -> Array:

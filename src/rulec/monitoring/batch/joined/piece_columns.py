@@ -49,16 +49,13 @@ class PieceColumns:
             absent = np.array([value is NOT_GIVEN for value in values], dtype=bool)
             anything = least_value(declaration)
             values = [anything if value is NOT_GIVEN else value for value in values]
-        self.add_encoded(encode_partly_known(values, declaration), declaration, suits, absent)
+        column = encode_partly_known(values, declaration)
+        self.add_encoded(column._replace(missing=absent), declaration, suits)
 
     def add_encoded(
-        self,
-        column: PartlyKnown,
-        declaration: Declaration,
-        suits: Flags | None = None,
-        absent: Flags | None = None,
+        self, column: PartlyKnown, declaration: Declaration, suits: Flags | None = None
     ) -> None:
-        """Add a name's column; ``absent``: where it gives nothing."""
+        """Add a name's column."""
         name, arity = declaration.name, len(declaration.parameters)
         (self._world, self._about, self._between)[arity][name] = column.values
         if suits is not None:
@@ -67,8 +64,8 @@ class PieceColumns:
             self._unknown[name] = column.unknown
         if column.upper is not None:
             self._bounds[name] = column.values, column.upper
-        if absent is not None:
-            self._absent[name] = absent
+        if column.missing is not None:
+            self._absent[name] = column.missing
         if isinstance(declaration, Enumeration):
             self._texts[name] = declaration.values
 

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Indices
 from rulec.monitoring.batch.columns.column_numbers import alike_places
-from rulec.monitoring.batch.stacked.stack import StackColumn
-from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
+from rulec.monitoring.batch.columns.encoded_columns import PartlyKnown
+from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in, enough_alike
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
@@ -78,7 +78,7 @@ class CrowdedStates:
             if column is None:
                 entangled |= name in shared and stack.default(name) is UNKNOWN
                 continue
-            flags = is_partial(column) if name in shared else column.apart
+            flags = column.partial if name in shared else column.apart
             if flags is not None and name in self._world:
                 entangled |= flags
             elif flags is not None:
@@ -201,7 +201,7 @@ def supposed_instead(
     return [instead if type(value) in UNKNOWN_TYPES else value for value in values]
 
 
-def _codes(column: StackColumn | None, where: Indices) -> list[Indices]:
+def _codes(column: PartlyKnown | None, where: Indices) -> list[Indices]:
     """Numbers for the values of a column at some places, equal where the values are equal."""
     if column is None:
         return []

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Flags
 from rulec.monitoring.batch.stacked.crowded_states import CrowdedStates, supposed_instead
-from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
+from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
-from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
+from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Columns, Numbers
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.trace import Value
@@ -51,7 +51,7 @@ def entangled_letters(
     rule: StackedRule,
     reader: StackReader,
     about: tuple[Spots, Flags],
-    numbers: Sequence[Numbers],
+    numbers: Columns,
     supposed: Mapping[Subject, Value],
     *,
     crowd: CrowdedStates,
@@ -119,7 +119,7 @@ def _are_entangled(reads: EntangledReads, reader: StackReader, spots: Spots) -> 
             if about in reads.shared and reader.stack.default(name) is UNKNOWN:
                 entangled[:] = True
             continue
-        flags = is_partial(column) if about in reads.shared else column.apart
+        flags = column.partial if about in reads.shared else column.apart
         if flags is not None:
             entangled |= flags[reader.where(variables, spots)]
     return entangled

@@ -7,9 +7,9 @@ where both have an effect in the same state.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import overload
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,41 +31,34 @@ _MOST_TOGETHER = 1 << 20
 _NONE = np.empty(0, dtype=np.intp)
 
 
-class NumbersAt(Sequence[Numbers]):
+class NumbersAt(dict[int, Numbers]):
     """The numbers of a rule's reads at some spots, each computed on first use."""
 
-    def __init__(self, rule: StackedRule, reader: StackReader, spots: Spots) -> None:
+    def __init__(
+        self,
+        rule: StackedRule,
+        reader: StackReader,
+        spots: Spots,
+        known: Mapping[int, Numbers] = MappingProxyType({}),
+    ) -> None:
+        super().__init__(known)
         self._rule, self._reader, self._spots = rule, reader, spots
-        self._known: dict[int, Numbers] = {}
 
-    def __len__(self) -> int:
-        return len(self._rule.reads)
+    def __missing__(self, place: int) -> Numbers:
+        return self.setdefault(place, self._reader.numbers(self._rule.reads[place], self._spots))
 
-    def __iter__(self) -> Iterator[Numbers]:
-        return map(self.__getitem__, range(len(self)))
-
-    @overload
-    def __getitem__(self, place: int) -> Numbers: ...
-
-    @overload
-    def __getitem__(self, place: slice) -> list[Numbers]: ...
-
-    def __getitem__(self, place: int | slice) -> Numbers | list[Numbers]:
-        if isinstance(place, slice):
-            return [self[k] for k in range(*place.indices(len(self)))]
-        if place not in self._known:
-            self._known[place] = self._reader.numbers(self._rule.reads[place], self._spots)
-        return self._known[place]
+    def with_others(self, others: Mapping[int, Numbers]) -> NumbersAt:
+        """The same numbers, but others of some reads."""
+        return NumbersAt(self._rule, self._reader, self._spots, {**self, **others})
 
     def part(self, spots: Spots, at: Indices) -> NumbersAt:
         """The numbers at some of the spots, given by their places ``at``."""
-        part = NumbersAt(self._rule, self._reader, spots)
         # Numbers computed from several values are not recomputed
-        part._known |= {
+        known = {
             place: own.take(at) if isinstance(own, np.ndarray) and own.ndim else own
-            for place, own in self._known.items()
+            for place, own in self.items()
         }
-        return part
+        return NumbersAt(self._rule, self._reader, spots, known)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -42,14 +42,6 @@ class MetValues:
     def __init__(self, stack: Stack) -> None:
         self._stack = stack
 
-    def values(self, name: str) -> int:
-        """The values of a signal, as bits; 0 if some are unknown or there are too many."""
-        return self.signals.get(name, 0)
-
-    def ends(self, name: str) -> tuple[float, float] | None:
-        """The least and greatest number of a quantity; None if some are unknown."""
-        return self._stack.ends(name)
-
     def with_default(self, name: str) -> int | None:
         """The values that a signal has anywhere, as bits; 0 if some are not known.
 

@@ -13,9 +13,10 @@ from rulec.array_types import Flags
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import reads_in
+from rulec.monitoring.batch.stacked.chosen_words import StackedOutcomes
 from rulec.monitoring.batch.stacked.entangled_letters import digits_at
-from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
-from rulec.monitoring.batch.stacked.stacked_outcomes import StackedWords
+from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
+from rulec.monitoring.batch.stacked.stacked_read import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_classes import PossibleWord
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
@@ -36,42 +37,42 @@ class StackedReasons:
         self._said: dict[str, tuple[Flags | None, Flags | None]] = {}
         self._of_type: dict[tuple[str | None, str], Flags] = {}
 
-    def of(self, words: StackedWords, place: int) -> OpenReasons:
+    def of(self, found: StackedOutcomes, place: int) -> OpenReasons:
         """Why the verdict on one of these words is open."""
-        possible, constants, is_exact = self._possible_words(words, place)
-        reasons = words.rule.machine.reasons(possible, constants, self._order)
+        possible, constants, is_exact = self._possible_words(found, place)
+        reasons = found.rule.machine.reasons(possible, constants, self._order)
         reasons = reasons._replace(exact=reasons.exact and is_exact)
-        first, last = words.instances.firsts[place], words.instances.lasts[place]
-        stretch = slice(int(first), int(last) + 1)
+        instances = found.words.instances
+        stretch = slice(int(instances.firsts[place]), int(instances.lasts[place]) + 1)
         return told_within_bounds(reasons, lambda name: self._is_within_bounds(name, stretch))
 
-    def beyond(self, words: StackedWords, place: int, names: Set[str]) -> frozenset[str]:
+    def beyond(self, found: StackedOutcomes, place: int, names: Set[str]) -> frozenset[str]:
         """The names other than these on which a verdict depends, found without all reasons."""
-        if not _are_more_unknown(words, place, names):
+        if not _are_more_unknown(found, place, names):
             return frozenset()
-        possible, constants, _ = self._possible_words(words, place)
-        return words.rule.machine.depends_beyond(possible, constants, self._order, names)
+        possible, constants, _ = self._possible_words(found, place)
+        return found.rule.machine.depends_beyond(possible, constants, self._order, names)
 
     def _possible_words(
-        self, words: StackedWords, place: int
+        self, found: StackedOutcomes, place: int
     ) -> tuple[list[PossibleWord], list[Mapping[str, object]], bool]:
         """One of these words for each choice of unknown constants, and whether it is exact."""
-        own = slice(int(words.bounds[place]), int(words.bounds[place + 1]))
-        rule, is_exact = words.rule, words.is_exact
+        rule, words = found.rule, found.words
+        own, is_exact = _states_of(found, place), words.is_exact
         possible: list[PossibleWord] = []
         constants: list[Mapping[str, object]] = []
-        for supposed, numbers, letters, entangled in zip(
-            words.supposed, words.numbers, words.letters, words.entangled, strict=True
-        ):
-            columns = [_part(column, own) for column in numbers]
+        for supposed, numbers, letters, entangled in found.letters:
+            columns = [_part(numbers[n], own) for n in range(len(rule.reads))]
             if entangled is not None:
                 columns.append(np.array(entangled.at(np.arange(own.start, own.stop))))
             starts, lengths = _runs(columns, own.stop - own.start)
             starts += own.start
             digits = [digits_at(rule, n, numbers[n], starts) for n in range(len(rule.reads))]
-            unknown = []
-            for n, column in enumerate(digits):
-                unknown.append(self._unknown_names(words, n, column, own))
+            spots = words.spots.part(own)
+            unknown = [
+                self._unknown_names(read, column, spots)
+                for read, column in zip(rule.reads, digits, strict=True)
+            ]
             sets = rule.letters.sets
             classes = [sets[number] for number in letters[starts].tolist()]
             cubes = zip(*digits, strict=True) if digits else [()] * len(starts)
@@ -92,15 +93,13 @@ class StackedReasons:
         return possible, constants, is_exact
 
     def _unknown_names(
-        self, words: StackedWords, read: int, digits: list[int], own: slice
+        self, stacked: StackedRead, digits: list[int], spots: Spots
     ) -> frozenset[str]:
         """The names with some unknown values."""
-        stacked = words.rule.reads[read]
         if all(mask & (mask - 1) == 0 for mask in set(digits)):
             return frozenset()
         if len(stacked.names) == 1:
             return frozenset(stacked.names)
-        spots = words.spots.part(own)
         if stacked.count is not None:
             return self._unknown_in_count(stacked.count, spots)
         assert isinstance(stacked.read, NumberRead), "it has several names"
@@ -108,7 +107,7 @@ class StackedReasons:
         for _, term in stacked.read.terms:
             assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
             column = stack.column(term.name)
-            flags = None if column is None else is_partial(column)
+            flags = None if column is None else column.partial
             if column is None:
                 is_unknown = stack.default(term.name) is UNKNOWN
             else:
@@ -126,7 +125,7 @@ class StackedReasons:
             assert not isinstance(read, ltl.Count), "it counts nothing"
             name, arguments = read.name, read.arguments
             column = stack.column(name)
-            flags = None if column is None else is_partial(column)
+            flags = None if column is None else column.partial
             if column is None:
                 is_unknown = there & (stack.default(name) is UNKNOWN)
             elif flags is None:
@@ -186,16 +185,21 @@ class StackedReasons:
         return flagged
 
 
-def _are_more_unknown(words: StackedWords, place: int, names: Set[str]) -> bool:
+def _are_more_unknown(found: StackedOutcomes, place: int, names: Set[str]) -> bool:
     """Whether one of these words has, or may have, unknown values of names other than these."""
-    if any(name not in names for supposed in words.supposed for name, _ in supposed):
+    if any(name not in names for own in found.letters for name, _ in own.supposed):
         return True
-    own = slice(int(words.bounds[place]), int(words.bounds[place + 1]))
-    rule = words.rule
+    own, rule = _states_of(found, place), found.rule
     others = [n for n, read in enumerate(rule.reads) if not names >= {*read.names}]
-    columns = [(n, numbers[n]) for numbers in words.numbers for n in others]
+    columns = [(n, numbers[n]) for _, numbers, *_ in found.letters for n in others]
     parts = ((n, x[own] if isinstance(x, np.ndarray) else x) for n, x in columns)
     return any(rule.letters.are_partial({n: part}, (n,)).any() for n, part in parts)
+
+
+def _states_of(found: StackedOutcomes, place: int) -> slice:
+    """The spots of one of the words."""
+    begin, end = found.words.bounds[place : place + 2].tolist()
+    return slice(begin, end)
 
 
 def _part(column: Numbers, own: slice) -> NDArray[np.intp]:

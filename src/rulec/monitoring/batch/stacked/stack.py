@@ -5,24 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from math import isfinite
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from rulec.array_types import Flags, Indices
 from rulec.automata.thresholds import EXACT_IN_FLOATS, exact_step
+from rulec.logic.bounds import in_steps
 from rulec.monitoring.batch.columns.encoded_columns import (
+    PartlyKnown,
     UnencodableError,
     column_dtype,
+    either,
     encode_values,
 )
-from rulec.monitoring.batch.columns.meant_columns import MeaningReader
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
+from rulec.monitoring.batch.joined.meant_columns import meant
 from rulec.monitoring.batch.joined.object_pairs import ObjectPairs
 from rulec.monitoring.batch.joined.trace_places import TracePlaces
-from rulec.monitoring.told_names import words_meant
 from rulec.trace.partly_known.column_values import partly_known
 from rulec.trace.partly_known.partly_known_values import NameValues
+from rulec.trace.partly_known.temporal_operators import Beyond
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -31,32 +34,20 @@ from rulec.vocabulary.vocabulary_model import least_value
 _NOWHERE = np.zeros(0, dtype=bool)
 
 
-class StackColumn(NamedTuple):
-    """The values of a name in all states, or cells, as in ``TraceColumns``.
-
-    None means nowhere. Where a value is ``missing`` it is not given and there is no default.
-    """
-
-    values: Array
-    upper: Array | None
-    unknown: Flags | None
-    missing: Flags | None
-
-    @property
-    def apart(self) -> Flags | None:
-        """Where a number is known only as an interval."""
-        return None if self.upper is None else self.upper != self.values
-
-
 class Stack(TracePlaces):
     """Traces with the same names, end to end; ``vocabulary`` has the defaults of other names.
 
-    ``defaults`` caches these, encoded as in columns, for all traces judged with the vocabulary.
+    ``defaults`` caches these, encoded as in columns, for all traces judged with the vocabulary;
+    ``meant`` are the words that their meanings give in these traces.
     ``arity`` is the number of objects that each name in the traces is about.
     """
 
     def __init__(
-        self, traces: JoinedTraces, vocabulary: Vocabulary, defaults: dict[str, Any]
+        self,
+        traces: JoinedTraces,
+        vocabulary: Vocabulary,
+        meant: Sequence[str],
+        defaults: dict[str, Any],
     ) -> None:
         super().__init__(traces.lengths, traces.n_objects, traces.spans, traces.types, vocabulary)
         self._defaults = defaults
@@ -65,10 +56,10 @@ class Stack(TracePlaces):
         parts = piece.world, piece.about, piece.between
         self.arity = {name: n for n, part in enumerate(parts) for name in part}
         self._kind = traces.kind
-        self._meant = words_meant(vocabulary, traces.kind.told)
-        for name in self._meant:
+        self._meant = meant
+        for name in meant:
             self.arity.setdefault(name, len(vocabulary.declarations[name].parameters))
-        self._columns: dict[str, StackColumn] = {}
+        self._columns: dict[str, PartlyKnown] = {}
         self._ends: dict[str, tuple[float, float]] = {}
 
     def untold(self, names: Iterable[str]) -> set[str]:
@@ -104,7 +95,7 @@ class Stack(TracePlaces):
 
     def partial_traces(self) -> set[int]:
         """Traces in which a value is unknown or an interval. Raises UnencodableError."""
-        doubts = ((name, either(own.apart, own.unknown)) for name, own in self.columns.items())
+        doubts = ((name, own.partial) for name, own in self.columns.items())
         known = ((name, flags) for name, flags in doubts if flags is not None)
         return {x for name, flags in known for x in self.traces_at(name, flags.nonzero()[0])}
 
@@ -126,7 +117,7 @@ class Stack(TracePlaces):
         """The pairs of objects that something is said about."""
         return self.pairs_of(self._pieces[0].pairs)
 
-    def column(self, name: str) -> StackColumn | None:
+    def column(self, name: str) -> PartlyKnown | None:
         """The column of a name; None if no state contains it. Raises UnencodableError."""
         if name not in self.arity:
             return None
@@ -135,18 +126,12 @@ class Stack(TracePlaces):
             self._columns[name] = self._meant_column(name) if is_meant else self._column(name)
         return self._columns[name]
 
-    def _meant_column(self, name: str) -> StackColumn:
+    def _meant_column(self, name: str) -> PartlyKnown:
         """The column of a word, by its meaning where no state tells it."""
-        meaning = MeaningReader(
-            vocabulary=self.vocabulary,
-            named=self.named,
-            begins=self.begins,
-            starts=self.starts,
-            state_of=self.state_of,
-            of_type=self.cells_of_type,
-            step_s=exact_step(self._kind.step_s),
-            beyond="cut" if self._kind.ends == "cut" else "over",
-        ).of(self.vocabulary.meanings[name])
+        own = self.vocabulary.meanings[name]
+        formula = in_steps(own.formula, exact_step(self._kind.step_s))
+        beyond: Beyond = "cut" if self._kind.ends == "cut" else "over"
+        meaning = meant(own.variables, formula, self, self.named, beyond)
         is_about = np.ones(len(meaning.sure), dtype=bool)
         for kind in self.vocabulary.declarations[name].parameters:
             is_about = self.of_type(kind)[self.object_of]
@@ -160,32 +145,35 @@ class Stack(TracePlaces):
             sure = np.where(untold, sure, told.values & ~unknown)
             possible = np.where(untold, possible, told.values | unknown)
         unknown = possible & ~sure
-        return StackColumn(sure, None, unknown if unknown.any() else None, None)
+        return PartlyKnown(sure, unknown=unknown if unknown.any() else None)
 
     def _is_told(self, name: str) -> bool:
         piece = self._pieces[0]
         return any(name in part for part in (piece.world, piece.about, piece.between))
 
-    def named(self, name: str) -> NameValues:
-        """The values of a name in all states, or in all cells; its default where it is not given.
+    def named(self, name: str, at: Indices | None = None) -> NameValues:
+        """A name's values ``at`` places, or at all of its places; its default if none is given.
 
         Raises UnencodableError.
         """
         declaration, column = self.vocabulary.declarations[name], self.column(name)
-        if column is not None:
-            values, unknown = column.values, either(column.unknown, column.missing)
-            upper = values if column.upper is None else column.upper
-            return partly_known(declaration, values, upper, unknown)
-        n_places = int((self.starts if declaration.parameters else self.begins)[-1])
-        default = self.default(name)
-        is_known = default is not None and default is not UNKNOWN
-        values = np.full(n_places, default if is_known else _anything(declaration))
-        return partly_known(
-            declaration, values, values, None if is_known else ~np.zeros(n_places, dtype=bool)
-        )
+        if column is None:
+            default, n_places = self.default(name), self.n_states
+            if declaration.parameters:
+                n_places = int(self.starts[-1])
+            is_known = default is not None and default is not UNKNOWN
+            shape = n_places if at is None else at.shape
+            values = np.full(shape, default if is_known else _anything(declaration))
+            unknown = None if is_known else np.ones(shape, dtype=bool)
+            return partly_known(declaration, values, values, unknown)
+        column = column if at is None else column.at(at)
+        values, upper = column.values, column.upper
+        unknown = either(column.unknown, column.missing)
+        # One array for both ends says that they are equal
+        return partly_known(declaration, values, values if upper is None else upper, unknown)
 
     @cached_property
-    def columns(self) -> Mapping[str, StackColumn]:
+    def columns(self) -> Mapping[str, PartlyKnown]:
         """The columns of all names in the traces. Raises UnencodableError."""
         if len(self._pieces) == 1:
             self._columns |= self._whole_signals()
@@ -193,12 +181,12 @@ class Stack(TracePlaces):
             self.column(name)
         return self._columns
 
-    def _whole_signals(self) -> dict[str, StackColumn]:
+    def _whole_signals(self) -> dict[str, PartlyKnown]:
         """The signals of the only piece that are known in all states, of all objects."""
         (piece,), declarations = self._pieces, self.vocabulary.declarations
         others = set().union(*self._flagged, self._partly, piece.texts)
         return {
-            name: StackColumn(values, None, None, None)
+            name: PartlyKnown(values)
             for arity, part in enumerate((piece.world, piece.about))
             for name, values in part.items()
             if name not in others
@@ -247,7 +235,7 @@ class Stack(TracePlaces):
             self._defaults[name] = default
         return self._defaults[name]
 
-    def _column(self, name: str) -> StackColumn:
+    def _column(self, name: str) -> PartlyKnown:
         declaration = self.vocabulary.declarations.get(name)
         arity = self.arity[name]
         if declaration is None or len(declaration.parameters) != arity:
@@ -282,11 +270,11 @@ class Stack(TracePlaces):
                 raise UnencodableError
             values = np.where(unfit, _anything(declaration), values)
             upper = None if upper is None else np.where(unfit, values, upper)
-        column = StackColumn(values, upper, unknown, None)
+        column = PartlyKnown(values, upper, unknown)
         column = column if unsaid is None else self._with_default(name, column, unsaid)
         return column if arity < 2 else self._with_strangers(name, column)
 
-    def _with_strangers(self, name: str, column: StackColumn) -> StackColumn:
+    def _with_strangers(self, name: str, column: PartlyKnown) -> PartlyKnown:
         """The column about pairs, with a last value for all pairs of which nothing is said."""
         default, unknown, upper = self.default(name), column.unknown, column.upper
         is_dark = default is UNKNOWN
@@ -297,7 +285,7 @@ class Stack(TracePlaces):
             unknown = np.append(known if unknown is None else unknown, is_dark)
         values = np.append(column.values, column.values.dtype.type(default))
         upper = None if upper is None else np.append(upper, float(default))
-        return StackColumn(values, upper, unknown, column.missing)
+        return PartlyKnown(values, upper, unknown, column.missing)
 
     def _unknown_and_unsaid(
         self, name: str, parts: Sequence[Array]
@@ -313,21 +301,19 @@ class Stack(TracePlaces):
             _joined(name, [piece.absent for piece in self._pieces], parts),
         )
 
-    def _with_default(self, name: str, column: StackColumn, unsaid: Flags) -> StackColumn:
+    def _with_default(self, name: str, column: PartlyKnown, unsaid: Flags) -> PartlyKnown:
         """The column with the default where no value is given."""
         default, unknown = self.default(name), column.unknown
         declaration = self.vocabulary.declarations[name]
         if default is None:
             missing = unsaid & self._suits(declaration)
-            return StackColumn(
-                column.values, column.upper, unknown, missing if missing.any() else None
-            )
+            return column._replace(missing=missing if missing.any() else None)
         if default is UNKNOWN:  # it is not told, and yet said of somebody
-            return StackColumn(column.values, column.upper, either(unknown, unsaid), None)
+            return column._replace(unknown=either(unknown, unsaid))
         values = np.where(unsaid, default, column.values).astype(column_dtype(declaration))
         upper = None if column.upper is None else np.where(unsaid, default, column.upper)
         unknown = None if unknown is None else unknown & ~unsaid
-        return StackColumn(values, upper, unknown, None)
+        return PartlyKnown(values, upper, unknown)
 
     def _suits(self, declaration: Declaration) -> Flags:
         """Which values of a name's column are about different objects of its types."""
@@ -409,13 +395,6 @@ def _ends(low: Array, high: Array | None) -> tuple[float, float]:
     if not len(low):
         return 0.0, 0.0
     return np.minimum.reduce(low).item(), np.maximum.reduce(most).item()
-
-
-def either(first: Flags | None, second: Flags | None) -> Flags | None:
-    """Where at least one of two flags is set; None means nowhere."""
-    if first is None or second is None:
-        return second if first is None else first
-    return first | second
 
 
 def _anything(declaration: Declaration) -> Any:

@@ -16,21 +16,22 @@ from rulec.automata.thresholds import ThresholdScale
 from rulec.logic import formula as ltl
 from rulec.logic.fold import fold
 from rulec.monitoring.batch.columns.column_numbers import (
-    Mask,
     comparison_sides,
     numbers_between,
-    partial_values,
+    truth_between,
 )
 from rulec.monitoring.batch.stacked.met_values import KLEENE_COLUMNS, UNKNOWN, MetValues
-from rulec.monitoring.batch.stacked.stack import Stack, StackColumn, either
-from rulec.monitoring.batch.stacked.stacked_rule import StackedRead
+from rulec.monitoring.batch.stacked.stack import Stack
+from rulec.monitoring.batch.stacked.stacked_read import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
-from rulec.trace.partly_known.partly_known_values import Truth
+from rulec.trace.partly_known.partly_known_values import Number, Truth
 from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
 from rulec.vocabulary.partial_values import PartialValue
 from rulec.vocabulary.vocabulary_model import values_of
+
+_ANY_NUMBER = Number(np.float64("-inf"), np.float64("inf"))
 
 
 class Spots(NamedTuple):
@@ -154,8 +155,8 @@ class StackReader:
                 read.meanings[int(default)] if ready is None else 1 << ready.digit(float(default))
             )
         if ready is None:
-            return read.of_values(self.met_values.values(name))
-        ends = None if ready.quantity is None else self.met_values.ends(name)
+            return read.of_values(self.met_values.signals.get(name, 0))
+        ends = None if ready.quantity is None else self.stack.ends(name)
         if ends is None:
             return read.every
         low, high = map(ready.digit, ends)
@@ -184,7 +185,7 @@ class StackReader:
             every = Spots(self.stack.state_of, cells, whole=True)
         numbers = self._of(read, every)
         if isinstance(read.read, Read):
-            met = self.met_values.values(read.names[0])
+            met = self.met_values.signals.get(read.names[0], 0)
             if met & (met - 1):
                 return numbers
         if isinstance(numbers, np.ndarray) and len(numbers) and numbers[0] == numbers[-1]:
@@ -225,26 +226,25 @@ class StackReader:
         return self.stack.pairs.places(first, second, spots.states)
 
     def _between(self, ready: ThresholdScale, spots: Spots) -> Numbers:
-        bounds = [(factor, *self._bounds(term, spots)) for factor, term in ready.read.terms]
-        return numbers_between(ready, bounds, len(spots.states))
+        terms = ready.read.terms
+        return numbers_between(ready, [(own, self._number(term, spots)) for own, term in terms])
 
-    def _bounds(
-        self, term: ltl.Term, spots: Spots
-    ) -> tuple[Array | float, Array | float, Mask | None]:
-        """The least and greatest value of a term, and where it is unknown (None for nowhere)."""
+    def _number(self, term: ltl.Term, spots: Spots) -> Number:
+        """The values of a quantity at the spots, or everywhere its default."""
         assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
         column = self.stack.column(term.name)
         if column is None:
             default = self.stack.default(term.name)
             if default is UNKNOWN_VALUE:
-                return 0.0, 0.0, np.True_
-            number = float(default)
-            return number, number, None
+                return _ANY_NUMBER
+            number = np.float64(default)
+            return Number(number, number)
         low = self._at(column.values, term.arguments, spots)
         high = low if column.upper is None else self._at(column.upper, term.arguments, spots)
         if column.unknown is None:
-            return low, high, None
-        return low, high, self._at(column.unknown, term.arguments, spots)
+            return Number(low, high)
+        dark = self._at(column.unknown, term.arguments, spots)
+        return Number(np.where(dark, -np.inf, low), np.where(dark, np.inf, high))
 
     def _counted(self, read: StackedRead, number: NumberRead, spots: Spots) -> Numbers:
         """The numbers of a count everywhere, over all objects or only those that variables name."""
@@ -289,19 +289,18 @@ class StackReader:
         return fold(formula, own)
 
     def _compared(self, comparison: ltl.Comparison, spots: Spots, about: str) -> Truth:
-        terms = []
+        parts = []
         for factor, term in comparison.terms:
             assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
-            own = (about,) * len(term.arguments)
-            terms.append((factor, ltl.QuantityTerm(term.name, own)))
-        sides = comparison_sides(tuple(terms), comparison.relation, comparison.limit)
-        numbers = self._between(sides.scale, spots)
-        return Truth(sides.every.take(numbers), sides.some.take(numbers))
+            own = ltl.QuantityTerm(term.name, (about,) * len(term.arguments))
+            parts.append((factor, self._number(own, spots)))
+        sides = comparison_sides(comparison.terms, comparison.relation, comparison.limit)
+        return truth_between(sides, parts)
 
     def _atom(self, atom: ltl.Atom, spots: Spots, arguments: tuple[str, ...]) -> Truth:
         declaration = self.stack.vocabulary.declarations[atom.name]
         column = self.stack.column(atom.name)
-        met = self.met_values.values(atom.name)
+        met = self.met_values.signals.get(atom.name, 0)
         values: Any
         if column is None:
             values, dark = self.stack.default(atom.name), None
@@ -328,15 +327,4 @@ class StackReader:
         column = self.stack.column(name)
         if column is None:
             return [declaration.default] * len(spots.states)
-        where = self.where(variables, spots)
-        return partial_values(
-            column.values[where],
-            None if column.upper is None else column.upper[where],
-            None if column.unknown is None else column.unknown[where],
-            declaration,
-        )
-
-
-def is_partial(column: StackColumn) -> Flags | None:
-    """The mask of cells without a single known value."""
-    return either(column.apart, column.unknown)
+        return column.at(self.where(variables, spots)).decoded(declaration)

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.automata.thresholds import ThresholdScale, scale
+from rulec.automata.mealy_monitor import Read
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_of
 from rulec.logic.kleene import holds
-from rulec.monitoring.batch.stacked.read_numbers import meanings_of
+from rulec.monitoring.batch.stacked.stacked_read import ReadKeys, StackedRead, stacked_read
+from rulec.monitoring.batch.stacked.word_answers import FEW_WORDS, WordAnswers
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
@@ -28,80 +26,22 @@ from rulec.monitoring.uncertainty.state_letters.related_facts import (
 )
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.suppositions import ConstantsReader
-from rulec.monitoring.uncertainty.uncertain_machine import Answer, UncertainMachine
+from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Value
 from rulec.trace.plain_arrays import different_pairs
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
-from rulec.vocabulary.vocabulary_model import values_of
 
 NOBODY = NothingKnown({}, Vocabulary("", {}, {}))
 """A state in which nothing is known about any object."""
 
-ReadKeys: TypeAlias = dict[object, int]
-"""Numbers of reads by what makes them equal, shared by all rules that are judged together."""
-
 MOST_SETS = 1 << 14
 """How many letter sets are kept before all are discarded."""
-
-MOST_BYTES = 1 << 22
-"""How many bytes of words with known answers are kept before all are discarded."""
-
-FEW_WORDS = 1 << 5
-"""Fewer words are evaluated one by one, without searching for equal ones."""
 
 _MOST_BITS = 63
 _NO_CLASS = 1 << _MOST_BITS
 """A bit, beside those of the letter classes, for impossible letters."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class StackedRead:
-    """A read, and the digits, as bits, that its numbers stand for; ``unknown`` means any digit.
-
-    ``variables`` are the rule's variables that it is asked about, ``names`` what it depends on.
-    ``count`` is the counted condition, if it is a count: of objects that any variable may stand for
-    or, if it ``counts_itself``, of only the object that its one variable stands for. Reads with the
-    same ``key`` have the same numbers; those with the same ``digits_key`` also the same digits.
-    ``ready`` are the thresholds of a number. A read that ``is_composed`` depends on several values
-    of an object: it is a sum, or counts itself. ``of_counts`` caches the digits of a count by the
-    values of its ``names`` anywhere, as bits; ``of_met`` those of a signal by its own values.
-    """
-
-    read: Read | NumberRead
-    variables: tuple[str, ...]
-    names: tuple[str, ...]
-    meanings: tuple[int, ...]
-    unknown: int
-    count: ltl.Count | None
-    ready: ThresholdScale | None
-    key: int
-    digits_key: int
-    is_composed: bool
-    of_counts: dict[tuple[int | None, ...], int] = field(default_factory=dict, init=False)
-    of_met: dict[int, int] = field(default_factory=dict, init=False)
-
-    @property
-    def every(self) -> int:
-        """All digits."""
-        return (1 << self.read.size) - 1
-
-    def of_values(self, met: int) -> int:
-        """The digits of some values of a signal, both as bits."""
-        known = self.of_met.get(met)
-        if known is None:
-            known = 0
-            for number in range(met.bit_length()):
-                if met >> number & 1:
-                    known |= self.meanings[number]
-            self.of_met[met] = known
-        return known
-
-    @property
-    def counts_itself(self) -> bool:
-        """Whether only the object that it is asked about can count."""
-        return self.count is not None and bool(self.variables)
 
 
 class StackedRule:
@@ -127,7 +67,7 @@ class StackedRule:
         self.machine = machine
         self.variables = tuple([variable.name for variable in rule.variables])
         self.types = tuple([variable.type for variable in rule.variables])
-        self.reads = tuple([_stacked(read, vocabulary, keys) for read in rule.machine.reads])
+        self.reads = tuple([stacked_read(read, vocabulary, keys) for read in rule.machine.reads])
         read_names = frozenset(name for read in self.reads for name in read.names)
         self.facts = related_facts(read_names, rulebook.axioms)
         self.in_facts = frozenset().union(*[names_of(fact.formula) for fact in self.facts])
@@ -140,14 +80,14 @@ class StackedRule:
         )
         constants = frozenset(vocabulary.constants)
         self.constants = tuple(
-            [n for n, x in enumerate(self.reads) if _is_value(x) and x.names[0] in constants]
+            [n for n, x in enumerate(self.reads) if x.is_value and x.names[0] in constants]
         )
         self.hidden = tuple(
             dict.fromkeys(
                 name
                 for read in self.reads
                 for name in read.names
-                if name in constants and not _is_value(read)
+                if name in constants and not read.is_value
             )
         )
         self.counts_everywhere = any(read.count and not read.variables for read in self.reads)
@@ -156,9 +96,7 @@ class StackedRule:
         self._class_bits: NDArray[np.uint64] = np.zeros(0, dtype=np.uint64)
         self._fit_bits = machine.machine.n_classes <= _MOST_BITS
         self.letters = self._no_letters()
-        self._answers: dict[bytes, Answer] = {}
-        self._words: dict[bytes, Answer | None] = {}
-        self._bytes = 0
+        self.answers = WordAnswers(machine, self.letters)
         self._vocabulary = vocabulary
         self._everybody: dict[str, str] = {}
         self._crowd: EntangledReads | None = None
@@ -201,7 +139,8 @@ class StackedRule:
     def forget_many(self) -> None:
         """Discard the known letter sets if there are many; their numbers become invalid."""
         if len(self.letters.sets) > MOST_SETS:
-            self.letters, self._answers, self._words = self._no_letters(), {}, {}
+            self.letters = self._no_letters()
+            self.answers = WordAnswers(self.machine, self.letters)
             self._busy_flags = np.zeros(0, dtype=bool)
             self._class_bits = np.zeros(0, dtype=np.uint64)
 
@@ -248,106 +187,6 @@ class StackedRule:
         """Whether all words of these classes, as bits, that end with one of ``last`` are kept."""
         return every < _NO_CLASS and self.machine.is_surely_kept(every, last)
 
-    def answer_to(self, letters: NDArray[np.intp]) -> Answer | None:
-        """The answer for a word, given as the number of a letter set for each state.
-
-        None if axioms exclude one of them.
-        """
-        key = letters.tobytes()
-        if key in self._words:
-            return self._words[key]
-        rows, _ = stretches(letters, np.array([0, len(letters)], dtype=np.intp))
-        answer = self._answer(rows)
-        if len(key) <= MOST_BYTES >> 10:
-            self._make_room(len(key))
-            self._words[key] = answer
-        return answer
-
-    def answer(self, rows: NDArray[np.intp]) -> Answer:
-        """The answer for a word, given as rows of a letter set's number and its repetitions."""
-        key = rows.tobytes()
-        answer = self._answers.get(key)
-        if answer is None:
-            self._make_room(len(key))
-            sets = self.letters.sets
-            word = ((sets[number], length) for number, length in rows.tolist())
-            answer = self._answers[key] = Answer(*self.machine.monitor.run_stretches(word))
-        return answer
-
-    def answers(
-        self, rows: NDArray[np.intp], ends: Sequence[int], places: Sequence[int]
-    ) -> list[Answer | None]:
-        """The answers for some of the words that lie in ``rows``, each between two ``ends``.
-
-        None for words of which axioms exclude a letter.
-        """
-        # One text of all words, since cutting arrays into thousands of words takes longer
-        text, width = rows.tobytes(), rows.itemsize * rows.shape[1]
-        keys = [text[width * ends[place] : width * ends[place + 1]] for place in places]
-        return [
-            self._answers.get(key) or self._answer(rows[ends[place] : ends[place + 1]])
-            for key, place in zip(keys, places, strict=True)
-        ]
-
-    def _answer(self, rows: NDArray[np.intp]) -> Answer | None:
-        sets = self.letters.sets
-        return self.answer(rows) if all(sets[n] for n in rows[:, 0].tolist()) else None
-
-    def _make_room(self, n_bytes: int) -> None:
-        self._bytes += n_bytes
-        if self._bytes > MOST_BYTES:
-            self._answers.clear()
-            self._words.clear()
-            self._bytes = n_bytes
-
-
-def stretches(
-    letters: NDArray[np.intp], bounds: NDArray[np.intp]
-) -> tuple[NDArray[np.intp], list[int]]:
-    """The letters of all words as rows of letter and repetitions, and each word's bounds in them.
-
-    Words begin and end at ``bounds``.
-    """
-    is_new = np.ones(len(letters), dtype=bool)
-    np.not_equal(letters[1:], letters[:-1], out=is_new[1:])
-    is_new[bounds[:-1]] = True
-    starts = is_new.nonzero()[0]
-    rows = np.empty((len(starts), 2), dtype=np.intp)
-    rows[:, 0] = letters[starts]
-    rows[:-1, 1] = starts[1:] - starts[:-1]
-    rows[-1:, 1] = len(letters) - starts[-1:]
-    return rows, starts.searchsorted(bounds).tolist()
-
-
-def _stacked(read: Read | NumberRead, vocabulary: Vocabulary, keys: ReadKeys) -> StackedRead:
-    meanings = tuple(meanings_of(read, vocabulary))
-    count: ltl.Count | None = None
-    key: object
-    names: tuple[str, ...]
-    if isinstance(read, Read):
-        unknown = len(values_of(vocabulary.declarations[read.name]))
-        ready, variables, names = None, read.variables, (read.name,)
-        key = read.name, len(read.variables)
-    else:
-        unknown, ready = read.size - 1, scale(read)
-        variables, names = tuple(dict.fromkeys(ready.variables)), ready.names
-        term = ready.quantity
-        key = id(read) if term is None else (term.name, len(term.arguments), ready.floors)
-        counts = [term for _, term in read.terms if isinstance(term, ltl.Count)]
-        count = counts[0] if len(read.terms) == 1 and counts else None
-    return StackedRead(
-        read,
-        variables,
-        names,
-        meanings=meanings,
-        unknown=unknown,
-        count=count,
-        ready=ready,
-        key=keys.setdefault(key, len(keys)),
-        digits_key=keys.setdefault((key, meanings), len(keys)),
-        is_composed=bool(variables) and ready is not None and ready.quantity is None,
-    )
-
 
 def _related(reads: Sequence[StackedRead], in_facts: frozenset[str]) -> tuple[int, ...]:
     """Reads that are counts, or share names with other reads or with axioms."""
@@ -364,7 +203,7 @@ def _is_simple(rule: StackedRule, vocabulary: Vocabulary) -> bool:
     """Whether all of the rule's reads are of kinds that can be read from arrays."""
     names = (name for name in rule.names if name in vocabulary.declarations)
     arity = max([len(vocabulary.declarations[name].parameters) for name in names], default=0)
-    is_among_two = arity == 2 and not any(read.count or _repeats(read) for read in rule.reads)
+    is_among_two = arity == 2 and not any(read.count or read.repeats for read in rule.reads)
     return (
         len(rule.variables) <= 2
         and (arity < 2 or is_among_two)
@@ -372,22 +211,6 @@ def _is_simple(rule: StackedRule, vocabulary: Vocabulary) -> bool:
         and all(_is_simple_read(read, rule) for read in rule.reads)
         and len({rule.reads[place].names for place in rule.constants}) == len(rule.constants)
     )
-
-
-def _repeats(read: StackedRead) -> bool:
-    """Whether a value is about two objects that are the same one."""
-    own = read.read
-    terms = (
-        [own.variables]
-        if isinstance(own, Read)
-        else [term.arguments for _, term in own.terms if isinstance(term, ltl.QuantityTerm)]
-    )
-    return any(len(set(variables)) < len(variables) for variables in terms)
-
-
-def _is_value(read: StackedRead) -> bool:
-    """Whether a read is a single value, not a sum or a count."""
-    return isinstance(read.read, Read) or scale(read.read).quantity is not None
 
 
 def _is_simple_read(read: StackedRead, rule: StackedRule) -> bool:

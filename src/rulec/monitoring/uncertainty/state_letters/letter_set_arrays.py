@@ -12,6 +12,9 @@ from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiag
 
 Numbers = NDArray[np.intp] | int
 
+Columns = Sequence[Numbers] | Mapping[int, Numbers]
+"""The numbers of each read."""
+
 
 class LetterSets:
     """The sets of classes of many letters at once, by numbers for what reads may be.
@@ -53,24 +56,22 @@ class LetterSets:
         places = self._places[0]
         return places.setdefault(classes << 1, len(places))
 
-    def are_partial(
-        self, columns: Sequence[Numbers] | Mapping[int, Numbers], reads: Sequence[int]
-    ) -> NDArray[np.bool_]:
+    def are_partial(self, columns: Columns, reads: Sequence[int]) -> NDArray[np.bool_]:
         """Whether some of these reads may have several digits."""
         partial: NDArray[np.bool_] = np.zeros(1, dtype=bool)
         for read in reads:
             partial = partial | self._several[read].take(columns[read])
         return partial
 
-    def letters_of(self, columns: Sequence[Numbers]) -> Numbers:
+    def letters_of(self, columns: Columns) -> Numbers:
         """The number of each letter set, for columns of the reads' numbers.
 
         One for all if they are equal.
         """
-        if not columns:
+        if not self._meanings:
             return 0
         here: Numbers = self._widths[-1]
-        for read in range(len(columns) - 1, -1, -1):
+        for read in range(len(self._meanings) - 1, -1, -1):
             entry, table = here + columns[read], self._tables[read]
             here = table.item(entry) if isinstance(entry, int) else table.take(entry)
         if isinstance(here, np.ndarray):
@@ -78,10 +79,10 @@ class LetterSets:
         # A single number for all letters may also be an array without axes
         return int(here) - 1 if here else self._met_first(columns)
 
-    def _met_first(self, columns: Sequence[Numbers]) -> Numbers:
+    def _met_first(self, columns: Columns) -> Numbers:
         """The numbers of letters of which some have not been met."""
         here: Numbers = self._widths[-1]
-        for read in range(len(columns) - 1, -1, -1):
+        for read in range(len(self._meanings) - 1, -1, -1):
             entry = here + columns[read]
             # There may be very many entries, while the table is small.
             is_there = np.zeros(self._tables[read].size, dtype=bool)
