@@ -1,5 +1,7 @@
 """The tally of violations over the drives of a recording."""
 
+from collections import Counter
+
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
@@ -132,7 +134,7 @@ def test_each_rule_has_one_outcome():
     counted, rules = ViolationTally(), ("fast", "gentle", "late", "torn", "blind")
     broken = Violation("fast", "hard", {}, 0)
     one = DriveVerdict(drive("1"), Verdict("1", (broken,), (doubtful,), (missing,)))
-    counted.add(one, rules, frozenset({"late", "torn", "blind"}))
+    counted.add(one, rules, Counter({"fast": 2, "gentle": 1}))
     assert counted.outcomes(rules) == {
         "fast": "found",
         "gentle": "nothing found",
@@ -142,8 +144,9 @@ def test_each_rule_has_one_outcome():
     }
     # In a second drive there was an occasion to break it
     later = ViolationTally()
-    later.add(verdict(drive("2")), rules, frozenset({"gentle", "torn"}))
+    later.add(verdict(drive("2")), rules, Counter({"fast": 1, "late": 3, "blind": 1}))
     counted.include(later)
+    assert counted.opportunities == Counter({"fast": 3, "gentle": 1, "late": 3, "blind": 1})
     assert counted.outcomes(("gentle", "late")) == {
         "gentle": "nothing found",
         "late": "nothing found",

@@ -18,7 +18,7 @@ from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.violation_evidence import explain_drive
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.explain.explanation import Explanation, explain
-from rulec.monitoring.moments.drive_facts import idle_rules
+from rulec.monitoring.moments.opportunities import opportunities_of
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import NotJudged, Verdict, VerdictOutcome, Violation, with_law
 from rulec.recordings.recording import Recording
@@ -194,10 +194,11 @@ class JudgedDrives(Judged):
         tally, own = ViolationTally(), self._again("")
         names = [rule.name for rule in own.rules.rules]
         for found in own.answers():
-            idle: frozenset[str] = frozenset()
+            met: Counter[str] | None = None
             if isinstance(found, DriveVerdict):
-                idle = idle_rules(found.drive.arrays, own.rules, found.answer)
-            tally.add(found, names, idle)
+                every = opportunities_of(found.drive.arrays, own.rules, found.answer)
+                met = Counter([opportunity.rule for opportunity in every])
+            tally.add(found, names, met)
         return tally.outcomes([*names, *[rule.name for rule in own.rules.too_large]])
 
     def drive(self, name: str) -> Drive:

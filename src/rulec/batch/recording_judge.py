@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
@@ -20,6 +21,7 @@ from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traces.lost_drives import lost_drive
 from rulec.extraction.traces.recorded_drive import NoDrive
+from rulec.monitoring.moments.opportunities import Opportunity
 from rulec.monitoring.verdict import NotJudged
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.recording_files import read_recordings
@@ -55,8 +57,7 @@ class JudgeSettings:
     of each file are explained, part by part if ``every_part``. The results may be text in this
     ``layout``, lines of JSON (by ``to_line``, as in ``recording_json``) and ``findings``. Files
     whose paths mean nothing to a reader have names in ``labels``. ``to_rows``, if given, makes the
-    rows of drives and rules for tables of findings, ``idle_rules`` finds those without an
-    opportunity, as in ``drive_facts``.
+    rows of drives and rules for tables of findings, ``opportunities`` finds those of a drive.
     """
 
     rules: CompiledRulebook
@@ -69,7 +70,7 @@ class JudgeSettings:
     to_line: Callable[..., str] | None = None
     labels: Mapping[str, str] = field(default_factory=dict)
     to_rows: RowMaker | None = None
-    idle_rules: Callable[..., frozenset[str]] | None = None
+    opportunities: Callable[..., Sequence[Opportunity]] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -289,17 +290,18 @@ class _RecordingJudge:
             place = SourceLocation(self._file)
             pieces += [DriveProblem(with_place(fault, place)) for fault in faults]
             own = self._accounts.findings.add(answer, explained) if settings.findings else None
-            idle = None
-            if settings.idle_rules is not None and not isinstance(answer, NoDrive):
-                idle = settings.idle_rules(answer.drive.arrays, verdicts.rules, answer.answer)
+            met: Sequence[Opportunity] | None = None
+            if settings.opportunities is not None and not isinstance(answer, NoDrive):
+                met = settings.opportunities(answer.drive.arrays, verdicts.rules, answer.answer)
             if settings.layout is not None:
                 self._show(answer, explained, own)
             if settings.to_rows is not None:
                 judged.rows += settings.to_rows(answer, verdicts, self._file, own)
             if settings.to_line is not None:
-                pieces.append(settings.to_line(answer, verdicts, explained, idle))
+                pieces.append(settings.to_line(answer, verdicts, explained, met))
             names = [rule.name for rule in verdicts.rules.rules]
-            judged.tally.add(answer, names, idle or frozenset())
+            counts = None if met is None else Counter([own.rule for own in met])
+            judged.tally.add(answer, names, counts)
             return pieces
         except Exception as problem:
             if isinstance(answer, NoDrive):

@@ -78,7 +78,7 @@ class RecordingRun(VerdictRun):
         self.complete &= bool(judged.tally.judged)
         self.open_hard |= bool(judged.tally.open_hard)
         if self.to.texts:
-            is_short = several and self.settings.idle_rules is None
+            is_short = several and self.settings.opportunities is None
             first = in_short(judged, page_width()) if is_short else judged.answer
             self.to.text("\n".join([first, *judged.explained]))
         if judged.findings is not None:

@@ -22,6 +22,7 @@ from rulec.trace import Trace
 from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.rulebooks import compile_here
+from support.builders.short_states import state_of
 from support.generators.blurred_traces import blurred
 from support.generators.random_rulebooks import rulebook
 from support.generators.random_traces import traces
@@ -50,19 +51,6 @@ def counted(
         ends=ends,
     )
     return facts_of(trace, compiled, verify(trace, compiled)).exposure["r"]
-
-
-def state_of(text):
-    """``red ?go behind(a)`` as a state in which these are true, and go is unknown."""
-    state = {}
-    for word in text.split():
-        value = UNKNOWN if word.startswith("?") else True
-        name, _, item = word.lstrip("?").rstrip(")").partition("(")
-        if item:
-            state.setdefault(name, {})[item] = value
-        else:
-            state[name] = value
-    return state
 
 
 IMPLICATION = "hard rule r { require always (red implies not go) }"

@@ -18,7 +18,7 @@ from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, with_all_v
 from rulec.monitoring.moments.exposure import Exposure, alike_exposures
 from rulec.monitoring.moments.name_tables import NameTables, tables_of
 from rulec.monitoring.moments.trace_truth import TraceTruth
-from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.monitoring.verdict import Verdict
 from rulec.trace import Trace
 from rulec.trace.formats.table_blocks import Block, BlockPresence
 from rulec.trace.partly_known.partly_known_values import EnumeratedChoice, Truth
@@ -82,16 +82,6 @@ def facts_of(
     truth = TraceTruth(tables, rulebook.semantics, trace.ends)
     (facts,) = _facts(truth, trace.step_s, rulebook, [verdict], [tuple(trace.objects)])
     return facts
-
-
-def idle_rules(
-    trace: TraceArrays, rulebook: CompiledRulebook, verdict: Verdict | NotJudged
-) -> frozenset[str]:
-    """The judged rules that a trace certainly gives no opportunity to violate."""
-    if isinstance(verdict, NotJudged):
-        return frozenset()
-    exposures = facts_of(trace, rulebook, verdict).exposure.items()
-    return frozenset([name for name, own in exposures if not own.perhaps_opportunities])
 
 
 def facts_of_many(

@@ -58,8 +58,8 @@ class Exposure:
 
 
 @dataclass(frozen=True, slots=True)
-class _Watched:
-    """A rule with its trigger and its breach, with bounds in steps."""
+class WatchedRule:
+    """A rule with its trigger, if it has one, and its breach, with bounds in steps."""
 
     rule: CompiledRule
     trigger: ReadyFormula | None
@@ -96,7 +96,7 @@ def alike_exposures(
         for verdict in verdicts
     ]
     result: list[dict[str, Exposure]] = [{} for _ in verdicts]
-    for watched in _watched(rulebook, exact_step(step_s)):
+    for watched in watched_rules(rulebook, exact_step(step_s)):
         rule = watched.rule
         if all(rule.name in those for those in left_out):
             continue
@@ -109,14 +109,15 @@ def alike_exposures(
     return result
 
 
-def _watched(rulebook: CompiledRulebook, step_s: Fraction) -> Sequence[_Watched]:
-    known: dict[Fraction, Sequence[_Watched]] = rulebook.prepared.setdefault(_Watched, {})
+def watched_rules(rulebook: CompiledRulebook, step_s: Fraction) -> Sequence[WatchedRule]:
+    """All rules of a rulebook, for traces with this step (s)."""
+    known: dict[Fraction, Sequence[WatchedRule]] = rulebook.prepared.setdefault(WatchedRule, {})
     if step_s not in known:
         known[step_s] = [_watched_rule(rule, step_s, rulebook) for rule in rulebook.rules]
     return known[step_s]
 
 
-def _watched_rule(rule: CompiledRule, step_s: Fraction, rulebook: CompiledRulebook) -> _Watched:
+def _watched_rule(rule: CompiledRule, step_s: Fraction, rulebook: CompiledRulebook) -> WatchedRule:
     breach = in_steps(breach_of(rule.formula), step_s)
     trigger = None if rule.trigger is None else in_steps(rule.trigger, step_s)
     # Both have the same columns if the last state is repeated for ever.
@@ -126,10 +127,10 @@ def _watched_rule(rule: CompiledRule, step_s: Fraction, rulebook: CompiledRulebo
         # The rulebook's source is read again for a place
         LOOKBACK.within(settles, rulebook.place_of(rule.name), "the formula")
     ready = None if trigger is None else ReadyFormula(trigger, settles)
-    return _Watched(rule, ready, ReadyFormula(breach, settles))
+    return WatchedRule(rule, ready, ReadyFormula(breach, settles))
 
 
-def _tally(truth: TraceTruth, watched: _Watched, outcomes: Mapping[Chosen, Outcome]) -> _Tally:
+def _tally(truth: TraceTruth, watched: WatchedRule, outcomes: Mapping[Chosen, Outcome]) -> _Tally:
     tally = _Tally(truth.tables.last)
     choices = truth.choices_of(watched.rule.variables)
     left = dict(outcomes)

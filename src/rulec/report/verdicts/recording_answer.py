@@ -267,6 +267,9 @@ class RecordingAnswer:
         more["kept regardless"] = " of the words that the recording lacks"
         for outcome, what in more.items():
             if names := by_outcome.get(outcome):
+                if outcome == "nothing found" and tally.opportunities:
+                    what = ", in so many opportunities"
+                    names = [f"{name} ({tally.opportunities[name]:,})" for name in names]
                 yield from self._wrapped(f"{outcome}{what}: {', '.join(names)}")
         vocabulary = verdicts.rules.vocabulary
         # It may also depend on the types that participants of unknown type have

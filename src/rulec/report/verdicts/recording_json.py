@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from typing import Any
 
@@ -14,8 +14,9 @@ from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.extraction.violation_evidence import evidence_of
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.moments.opportunities import Opportunity, Outcome
 from rulec.monitoring.verdict import NotJudged
-from rulec.report.json_document import JsonDocument, as_line, filled
+from rulec.report.json_document import JsonDocument, JsonPart, as_line, filled
 from rulec.report.verdicts.verdict_json import (
     BoundsData,
     EvidenceData,
@@ -28,10 +29,25 @@ from rulec.report.verdicts.verdict_json import (
 )
 
 
+class OpportunityData(JsonPart, frozen=True, kw_only=True):
+    """An opportunity to violate a rule, and what became of it: open if it may be violated.
+
+    There is perhaps none if it is not ``certain``.
+    """
+
+    rule: str
+    binding: Mapping[str, str]
+    from_s: float
+    to_s: float
+    outcome: Outcome
+    certain: bool
+
+
 class RecordedVerdict(TraceVerdict, frozen=True, kw_only=True):
     """The verdict on the drive of vehicle ``trace``, in the recording's times.
 
-    ``idle``, with ``--why``, are the ``judged`` rules that it gave no opportunity to violate.
+    With ``--why``, ``opportunities`` are all to violate the ``judged`` rules, and ``idle`` those of
+    these rules that it gave none for.
     """
 
     recording: str
@@ -41,6 +57,7 @@ class RecordedVerdict(TraceVerdict, frozen=True, kw_only=True):
     step_s: float
     by_default: Sequence[str]
     idle: Sequence[str] | UnsetType = UNSET
+    opportunities: Sequence[OpportunityData] | UnsetType = UNSET
 
 
 class RecordedNotJudged(TraceNotJudged, frozen=True, kw_only=True):
@@ -77,7 +94,7 @@ def as_json(
     result: DriveVerdict | NoDrive,
     verdicts: RecordingVerdicts,
     explained: Sequence[Explanation],
-    idle: frozenset[str] | None = None,
+    opportunities: Sequence[Opportunity] | None = None,
 ) -> str:
     """Write a vehicle's verdict with explanations of its first violations."""
     rules = verdicts.rules
@@ -111,6 +128,11 @@ def as_json(
         }
         violations.append(replace(data, **further))
     about = verdict_fields(answer, rules) | recorded
-    if idle is not None:
-        about["idle"] = [name for name in about["judged"] if name in idle]
+    if opportunities is not None:
+        met = {*answer.kept_regardless}.union(x.rule for x in opportunities)
+        about["idle"] = [name for name in about["judged"] if name not in met]
+        about["opportunities"] = [
+            filled(OpportunityData, x, from_s=drive.time_s(x.first), to_s=drive.time_s(x.last))
+            for x in opportunities
+        ]
     return as_line(filled(RecordedVerdict, answer, violations=violations, **about))

@@ -31,8 +31,9 @@ class ViolationTally:
     that many drives past one standing car are one finding. ``judged_in``: rule -> the number of
     drives in which it is neither open nor not judged, ``regardless_in`` of those in which it is
     kept whatever the words are that it lacks, ``idle_in`` of those with no opportunity to violate
-    it, if that has been looked for. ``words`` are the names of the signals that every drive
-    supplies. ``faults`` of rulec cost rules in some drives, or drives.
+    it, and ``opportunities`` their number in all drives, if these have been looked for. ``words``
+    are the names of the signals that every drive supplies. ``faults`` of rulec cost rules in some
+    drives, or drives.
     """
 
     drives: dict[VerdictOutcome, list[str]] = field(default_factory=dict)
@@ -46,6 +47,7 @@ class ViolationTally:
     judged_in: Counter[str] = field(default_factory=Counter)
     regardless_in: Counter[str] = field(default_factory=Counter)
     idle_in: Counter[str] = field(default_factory=Counter)
+    opportunities: Counter[str] = field(default_factory=Counter)
     open_hard: int = 0
     words: frozenset[str] | None = None
     faults: dict[str, None] = field(default_factory=dict)
@@ -93,9 +95,9 @@ class ViolationTally:
         self,
         verdict: DriveVerdict | NoDrive,
         rules: Sequence[str],
-        idle: frozenset[str] = frozenset(),
+        opportunities: Counter[str] | None = None,
     ) -> None:
-        """Count a drive's verdict on these rules, of which some are ``idle`` in it."""
+        """Count a drive's verdict on these rules, with so many opportunities to violate each."""
         if isinstance(verdict, NoDrive):
             self.not_judged.append(verdict)
             return
@@ -126,7 +128,10 @@ class ViolationTally:
         judged = [rule for rule in rules if rule not in doubtful]
         self.judged_in.update(judged)
         self.regardless_in.update(answer.kept_regardless)
-        self.idle_in.update(idle.intersection(judged))
+        if opportunities is not None:
+            met = opportunities.keys() | answer.kept_regardless
+            self.idle_in.update([rule for rule in judged if rule not in met])
+            self.opportunities.update(opportunities)
 
 
 def _joined(own: Any, later: Any) -> Any:

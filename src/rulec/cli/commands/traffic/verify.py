@@ -266,7 +266,7 @@ def _judge(
             findings=bool(outputs.writers),
             to_line=lazy.recording_line if outputs.lines else None,
             to_rows=None if to_rows is None else to_rows.of_answer,
-            idle_rules=lazy.idle_rules if asked.why else None,
+            opportunities=lazy.opportunities_of if asked.why else None,
         )
         recorded = lazy.RecordingRun(rules, outputs, complaints, settings=settings)
         for problem in request.inputs.problems:
