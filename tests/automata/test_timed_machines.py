@@ -5,7 +5,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rulec.automata.alphabet import knowledge, propositions_of, reads_of
-from rulec.automata.worker.random_words import agrees, verdict
+from rulec.automata.worker.job_answers import agrees, verdict
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
 from support.generators.timed_formulas import (
     SPEED,

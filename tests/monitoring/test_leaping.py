@@ -8,12 +8,12 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rulec.monitoring.batch.machines.joint_machine import JointMachine
-from rulec.monitoring.batch.machines.multi_step_tables import (
+from rulec.monitoring.batch.machines.table_run import (
     _lengths,
+    run,
     run_multi_step,
     steps_of,
 )
-from rulec.monitoring.batch.machines.table_run import run
 from rulec.trace.trace_columns import layout_of, smallest_unsigned
 
 

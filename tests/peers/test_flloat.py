@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from rulec.automata.alphabet import propositions_of, reads_of
-from rulec.automata.worker.random_words import verdict
+from rulec.automata.worker.job_answers import verdict
 from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.formula import Binary, Constant, Unary
 from rulec.logic.semantics import holds

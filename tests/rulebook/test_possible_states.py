@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from rulec.logic import formula as ltl
 from rulec.rulebook.loader import parse_rulebook
-from rulec.rulebook.rules.axiom_contradictions import contradictions
-from rulec.rulebook.rules.possible_states import may_hold
+from rulec.rulebook.rules.axiom_contradictions import contradictions, may_hold
 from rulec.vocabulary import Enumeration, Quantity, Signal, Vocabulary
 
 WORDS = Vocabulary(

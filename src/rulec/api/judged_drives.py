@@ -18,7 +18,7 @@ from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.violation_evidence import explain_drive
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.explain.explanation import Explanation, explain
-from rulec.monitoring.moments.opportunities import opportunities_of
+from rulec.monitoring.moments.opportunity_outcomes import opportunities_of
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import NotJudged, Verdict, VerdictOutcome, Violation, with_law
 from rulec.recordings.recording import Recording

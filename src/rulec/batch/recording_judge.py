@@ -21,7 +21,7 @@ from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traces.lost_drives import lost_drive
 from rulec.extraction.traces.recorded_drive import NoDrive
-from rulec.monitoring.moments.opportunities import Opportunity
+from rulec.monitoring.moments.opportunity_outcomes import Opportunity
 from rulec.monitoring.verdict import NotJudged
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.recording_files import read_recordings

@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation, explain
     from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of_many
     from rulec.monitoring.moments.formula_moments import moments
-    from rulec.monitoring.moments.opportunities import opportunities_of
+    from rulec.monitoring.moments.opportunity_outcomes import opportunities_of
     from rulec.monitoring.online import monitor_sources
     from rulec.monitoring.online.running_monitor import RunningMonitor
     from rulec.partition import NavigationGraph

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import floor
@@ -13,9 +14,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from rulec.diagnostics import SourceLocation, did_you_mean
 from rulec.diagnostics.argument_kinds import expected, finite
-from rulec.extraction.candidate_drives import CandidateDrives
+from rulec.extraction.candidate_drives import Block, CandidateDrives
+from rulec.extraction.possible_types import PossibleTypes
 from rulec.extraction.recording_parts import egos_of, span_of, whole_recording
-from rulec.extraction.selection import RequestedDrives, chosen_side, with_night_assumed
+from rulec.extraction.selection import (
+    RequestedDrives,
+    chosen_side,
+    with_drives_otherwise,
+    with_night_assumed,
+)
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
+from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.source_tolerances import tolerances_of
 from rulec.recordings.encodings.file_values import LARGEST
@@ -27,7 +36,6 @@ from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.recordings.track import Track, TrackOutlines, TrackStates, rectangles
 from rulec.rulebook.rulebook_model import Traffic
 from rulec.scenario.recorded.route import lanelet_area
-from rulec.scoring.drives_by_type import DrivesByType
 from rulec.scoring.scoring_messages import BAD_CANDIDATES
 from rulec.value_display import short_repr
 
@@ -320,3 +328,55 @@ def _numbers(
         way_out = "leave out candidates that have no place in some state"
         raise BAD_CANDIDATES.error(None, message, expected=expected, help=way_out)
     return found
+
+
+@dataclass(frozen=True)
+class DrivesByType:
+    """The drives of candidates among others, each with those of ``otherwise``.
+
+    As in a recording, these are for candidates that have a participant of unknown type near them.
+    """
+
+    drives: CandidateDrives
+
+    @cached_property
+    def _types(self) -> PossibleTypes:
+        return PossibleTypes(self.drives.recording)
+
+    @cached_property
+    def _otherwise(self) -> Sequence[CandidateDrives]:
+        """The drives among the same others, if those of unknown type had one that they may have."""
+        own = self.drives
+        return [
+            CandidateDrives(recording, own.side, own.thresholds, own.span)
+            for recording in self._types.recordings()
+        ]
+
+    def in_blocks(self, candidates: Sequence[Participant], writer: TraceWriter) -> Iterator[Block]:
+        """The drives of candidates, block by block; the first contains the first candidate."""
+        for block in self.drives.in_blocks(candidates, writer):
+            if writer.defaults:
+                yield block
+                continue
+            reach_m = 2 * self.drives.thresholds.near_m
+            near = [x for x, _ in block if self._types.is_near(candidates[x], reach_m)]
+            yield self._with_others(block, near, candidates, writer) if near else block
+
+    def _with_others(
+        self,
+        block: Block,
+        near: Sequence[int],
+        candidates: Sequence[Participant],
+        writer: TraceWriter,
+    ) -> Block:
+        bodies = [candidates[number] for number in near]
+        writer = replace(writer, bare=True)
+        found = [
+            dict(zip(near, drives.of(bodies, writer), strict=True)) for drives in self._otherwise
+        ]
+
+        def of(number: int, own: tuple[Drive | NoDrive, ...]) -> tuple[Drive | NoDrive, ...]:
+            others = [of_type[number] for of_type in found if number in of_type]
+            return tuple(with_drives_otherwise(own, others))
+
+        return [(number, of(number, own)) for number, own in block]

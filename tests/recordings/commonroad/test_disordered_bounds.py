@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.recordings.commonroad.disordered_bounds import in_order, with_ordered_bounds
+from rulec.recordings.commonroad.scenario_content import in_order, with_ordered_bounds
 from support.builders.recordings import straight
 
 ALONG = np.stack((np.arange(0.0, 60.0, 10.0), np.zeros(6)), axis=1)

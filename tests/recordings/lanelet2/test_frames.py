@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.lanelet2.projections import utm_zone
+from rulec.recordings.lanelet2.map_frame import utm_zone
 from rulec.recordings.map_files import read_map
 from support.builders.lanelet2_files import MapFile
 

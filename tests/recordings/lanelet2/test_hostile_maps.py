@@ -5,7 +5,7 @@ import gzip
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.lanelet2 import map_lanelets, osm_file, topology
+from rulec.recordings.lanelet2 import lanelet2_map, map_lanelets, osm_file
 from rulec.recordings.map_files import read_map
 from support.builders.counted_steps import grows_in_proportion
 from support.builders.lanelet2_files import MapFile, two_way_street
@@ -121,7 +121,7 @@ def test_counts_are_bounded(tmp_path, monkeypatch, module, limit, says):
 
 
 def test_lanelets_at_one_place_are_bounded(tmp_path, monkeypatch):
-    monkeypatch.setattr(topology, "MOST_AT_ONE_PLACE", 5)
+    monkeypatch.setattr(lanelet2_map, "MOST_AT_ONE_PLACE", 5)
     file = MapFile()
     left, right = file.line((0, 2), (9, 2)), file.line((0, 0), (9, 0))
     for _ in range(6):

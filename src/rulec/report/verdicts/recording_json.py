@@ -14,7 +14,7 @@ from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.extraction.violation_evidence import evidence_of
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.explain.margins import Margin
-from rulec.monitoring.moments.opportunities import Opportunity, Outcome
+from rulec.monitoring.moments.opportunity_outcomes import Opportunity, Outcome
 from rulec.monitoring.verdict import NotJudged
 from rulec.report.json_document import JsonDocument, JsonPart, as_line, filled
 from rulec.report.verdicts.verdict_json import (

@@ -10,13 +10,15 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks.matching.lane_candidates import NEAR_M, SIGMA_M, candidates
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.matching.map_matching import (
     BETA_M,
     BREAK_COST,
     CHANGE_COST,
+    NEAR_M,
+    SIGMA_M,
     MapMatching,
+    candidates,
 )
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL

@@ -8,7 +8,7 @@ from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.moments.drive_facts import facts_of
-from rulec.monitoring.moments.opportunities import opportunities_of
+from rulec.monitoring.moments.opportunity_outcomes import opportunities_of
 from rulec.monitoring.verdict import rule_for
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
