@@ -12,7 +12,7 @@ from hashlib import blake2b
 import pytest
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
-from rulec.automata.bundle import minisign
+from rulec.automata.bundle import required_signature
 from rulec.cli.main import main
 
 NUMBER = b"numbered"
@@ -148,9 +148,9 @@ VZuMb860k/Natq0GPn9fORG1BQNtNUv7QE0LLR3PLp3N5JYMLV9r0v/aJWH/7pDMaKnBQno+0grGxtTs
 
 
 def test_what_minisign_has_signed():
-    key, signature = minisign.public_key(KEY), minisign.detached_signature(SIGNATURE)
-    assert minisign.has_signed(key, signature, b"hello\n")
-    assert not minisign.has_signed(key, signature, b"hello")
+    key, signature = required_signature.public_key(KEY), required_signature.detached_signature(SIGNATURE)
+    assert required_signature.has_signed(key, signature, b"hello\n")
+    assert not required_signature.has_signed(key, signature, b"hello")
     assert signature.comment == "de, 2026"
 
 
