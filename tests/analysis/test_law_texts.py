@@ -3,9 +3,9 @@
 import pytest
 
 from rulec.analysis.audit.citations import references_in
-from rulec.analysis.audit.law_check import check_cites
 from rulec.analysis.audit.law_text import law_text
 from rulec.analysis.audit.provision_coverage import provisions_of, unlisted
+from rulec.analysis.audit.rulebook_audit import check_cites
 from rulec.diagnostics import RulecError, Source
 from rulec.rulebook.loader import parse_rulebook
 

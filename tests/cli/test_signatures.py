@@ -148,7 +148,10 @@ VZuMb860k/Natq0GPn9fORG1BQNtNUv7QE0LLR3PLp3N5JYMLV9r0v/aJWH/7pDMaKnBQno+0grGxtTs
 
 
 def test_what_minisign_has_signed():
-    key, signature = required_signature.public_key(KEY), required_signature.detached_signature(SIGNATURE)
+    key, signature = (
+        required_signature.public_key(KEY),
+        required_signature.detached_signature(SIGNATURE),
+    )
     assert required_signature.has_signed(key, signature, b"hello\n")
     assert not required_signature.has_signed(key, signature, b"hello")
     assert signature.comment == "de, 2026"

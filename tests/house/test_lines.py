@@ -2,7 +2,7 @@
 
 from support.source_modules import PACKAGE
 
-MOST_LINES = 157_167
+MOST_LINES = 157_151
 """What a change adds is paid for by what leaves; one that subtracts lowers this."""
 
 SLACK = 100

@@ -264,6 +264,11 @@ def test_the_command_tells_the_verdict(capsys):
     lawful = found["lawful"]
     assert f"lawful      {lawful} of " in told
     assert lawful > sum(verdict["lawful"] for verdict in verdicts)
+    ways = found["lawful_ways"]
+    assert len({tuple(way["cells"]) for way in ways}) == len(ways) > 2
+    for way in ways:
+        assert [row[0] for row in way["states"]] == [0.5 * number for number in range(9)]
+        assert way["states"][0] == pytest.approx(ways[0]["states"][0])
     counts = [found[name] for name in ("free", "lawful", "closed", "undecided")]
     assert (sum(counts), counts[1]) == (found["traces"], lawful)
     # Who violates a rule has met it; it is not among those that it keeps

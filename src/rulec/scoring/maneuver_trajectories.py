@@ -28,7 +28,7 @@ from rulec.recordings.track import Track, TrackOutlines, TrackStates
 from rulec.scenario.recorded.scene_origin import SceneOrigin
 from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import traces_of
-from rulec.scoring.sampled_ways import recorded_way, sampled_ways
+from rulec.scoring.sampled_ways import SampledWay, recorded_way, sampled_ways
 from rulec.scoring.score import score
 from rulec.scoring.scores import Scores
 from rulec.scoring.scoring_messages import NO_TRAJECTORY
@@ -74,8 +74,8 @@ class TrajectoryScores:
 
     Violations are those of states ``step_s`` (s) apart, the first one after the scene's beginning;
     the last one is at ``until_s`` (s). ``is_cut`` if the recording ends before the horizon.
-    ``sampled`` are the maneuvers of further ways that ego may drive, with whether one of these is
-    lawful; ``tested`` has some of these, too.
+    ``sampled`` are the maneuvers of further ways that ego may drive, with the gentlest of these
+    that is lawful, if any is; ``tested`` has some of these, too.
     """
 
     step_s: float
@@ -83,7 +83,7 @@ class TrajectoryScores:
     is_cut: bool
     of: Mapping[tuple[int, ...], CandidateScore]
     tested: Mapping[tuple[int, ...], TestedRules]
-    sampled: Mapping[tuple[int, ...], bool]
+    sampled: Mapping[tuple[int, ...], SampledWay | None]
 
     @property
     def lawful_as_driven(self) -> frozenset[tuple[int, ...]]:
@@ -99,8 +99,7 @@ class TrajectoryScores:
     @property
     def lawful(self) -> frozenset[tuple[int, ...]]:
         """The maneuvers of which a trajectory or another way does."""
-        sampled = {nodes for nodes, is_lawful in self.sampled.items() if is_lawful}
-        return self.lawful_as_driven | sampled
+        return self.lawful_as_driven.union(nodes for nodes, way in self.sampled.items() if way)
 
     @property
     def n_tried(self) -> int:
@@ -146,8 +145,10 @@ def trajectory_scores(maneuvers: Maneuvers, listed: Sequence[Maneuver]) -> Traje
 _ByNodes: TypeAlias = dict[tuple[int, ...], _Found]
 
 
-def _sampled(maneuvers: Maneuvers, n_states: int) -> tuple[_ByNodes[bool], _ByNodes[TestedRules]]:
-    """The maneuvers of ways that ego may drive, with whether one of a maneuver's is lawful.
+def _sampled(
+    maneuvers: Maneuvers, n_states: int
+) -> tuple[_ByNodes[SampledWay | None], _ByNodes[TestedRules]]:
+    """The maneuvers of ways that ego may drive, with the gentlest lawful one, if any is.
 
     The gentlest are looked at first, and no more than a number of them. And of some lawful ones the
     rules that they meet.
@@ -156,7 +157,8 @@ def _sampled(maneuvers: Maneuvers, n_states: int) -> tuple[_ByNodes[bool], _ByNo
     recorded = recorded_way(maneuvers.graph, _origin(maneuvers))
     ways = [] if recorded is None else [recorded]
     ways += [] if search is None else sampled_ways(maneuvers.graph, search.others)
-    found, tested = {way.nodes: False for way in ways}, dict[tuple[int, ...], TestedRules]()
+    found: _ByNodes[SampledWay | None] = {way.nodes: None for way in ways}
+    tested: _ByNodes[TestedRules] = {}
     if not ways:
         return found, tested
     scores = _scores(maneuvers, [way.at for way in ways], n_states)
@@ -174,7 +176,7 @@ def _sampled(maneuvers: Maneuvers, n_states: int) -> tuple[_ByNodes[bool], _ByNo
                 continue
             tested[way.nodes] = own
             kept.update(own.kept)
-        found[way.nodes] = True
+        found[way.nodes] = way
     return found, tested
 
 

@@ -8,6 +8,7 @@ cells.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from math import ceil, inf
@@ -49,6 +50,11 @@ class SampledWay:
     def at(self, times_s: Floats) -> Floats:
         """The motion at some times (s)."""
         return np.stack([np.interp(times_s, self.times_s, own) for own in self.motion.T], axis=1)
+
+    def rows_at(self, times_s: Sequence[float]) -> list[list[float]]:
+        """Each time with the motion, to a millimetre (per second)."""
+        rows: list[list[float]] = self.at(np.array(times_s)).round(3).tolist()
+        return [[time_s, *row] for time_s, row in zip(times_s, rows, strict=True)]
 
 
 def sampled_ways(graph: NavigationGraph, others: OthersBeside) -> list[SampledWay]:

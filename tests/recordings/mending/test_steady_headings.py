@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.recordings.mending.steady_headings import with_steady_headings
+from rulec.recordings.mending.mended_recording import with_steady_headings
 from rulec.recordings.recording import Participant, Recording, TrackState
 from rulec.recordings.track import Track, TrackOutlines, TrackStates, rectangles
 

@@ -201,13 +201,24 @@ class ClassesData(JsonPart, frozen=True, kw_only=True):
     representatives: Sequence[ManeuverData]
 
 
+class LawfulWay(JsonPart, frozen=True, kw_only=True):
+    """A way that ego may drive lawfully, and the cells of its maneuver, by their indices.
+
+    ``states`` are those at the beginning of each layer: time, s, speed along, d, speed across.
+    """
+
+    cells: Sequence[int]
+    states: Sequence[Sequence[float]]
+
+
 class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     """The counts of maneuvers in a scenario, and the further answers requested.
 
     ``free`` are those all of whose trajectories keep every hard rule (``satisfying``), ``closed``
     those all of whose trajectories violate one (``violating``). Of the others, ``lawful`` are those
     tried in a recorded scene of which a trajectory keeps each hard rule whose trigger it surely
-    meets, as far as these are judged, and meets some; the rest is ``undecided``.
+    meets, as far as these are judged, and meets some; the rest is ``undecided``. The
+    ``lawful_ways`` are the gentlest of some maneuvers, besides the trajectories of those listed.
 
     For ``open`` maneuvers, besides those ``satisfying``, the verdict depends on ``unknown`` values;
     ``exact`` is false if there were too many cases to examine, so that some verdicts may be known
@@ -249,6 +260,7 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     least_violating: Sequence[ManeuverData] | UnsetType = UNSET
     ranked: Sequence[ManeuverData] | UnsetType = UNSET
     maneuvers: Sequence[ManeuverData] | UnsetType = UNSET
+    lawful_ways: Sequence[LawfulWay] | UnsetType = UNSET
     likeliest: float | UnsetType = UNSET
     worlds: Sequence[WorldData] | UnsetType = UNSET
     rules: Sequence[PruningData] | UnsetType = UNSET

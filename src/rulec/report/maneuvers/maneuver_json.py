@@ -22,6 +22,7 @@ from rulec.report.maneuvers.maneuver_document import (
     ClassesData,
     DeadEndData,
     DerivedSignal,
+    LawfulWay,
     LevelPenalty,
     ManeuverData,
     ManeuversDocument,
@@ -80,6 +81,7 @@ class _AnsweredManeuvers:
             least_violating=answers.best and [*map(self._ranked, answers.best)],
             ranked=answers.ranked and [*map(self._ranked, answers.ranked)],
             maneuvers=answers.listed and [*map(self._listed, answers.listed)],
+            lawful_ways=self._lawful_ways(),
             likeliest=maneuver_report.likeliest(scenario) if several else None,
             worlds=answers.worlds
             and [
@@ -92,6 +94,18 @@ class _AnsweredManeuvers:
             least_braking_later=least if later else None,
             in_way=maneuvers.in_way if maneuver_report.lists_none(maneuvers, answers) else None,
         )
+
+    def _lawful_ways(self) -> list[LawfulWay] | None:
+        """The lawful ways in a recorded scene, else None."""
+        driven, layers = self.answers.driven, self.maneuvers.graph.layers
+        if driven is None:
+            return None
+        times_s = [layer.start_s for layer in layers]
+        return [
+            LawfulWay(cells=nodes, states=way.rows_at(times_s))
+            for nodes, way in driven.sampled.items()
+            if way is not None
+        ]
 
     def _dead_end(self) -> DeadEndData | None:
         """The dead end if there is no maneuver, else None."""
