@@ -150,8 +150,7 @@ def _sampled(
 ) -> tuple[_ByNodes[SampledWay | None], _ByNodes[TestedRules]]:
     """The maneuvers of ways that ego may drive, with the gentlest lawful one, if any is.
 
-    The gentlest are looked at first, and no more than a number of them. And of some lawful ones the
-    rules that they meet.
+    No more than a number are looked at, the gentlest first; of some also the rules that they meet.
     """
     search = maneuvers.witness_search
     recorded = recorded_way(maneuvers.graph, _origin(maneuvers))

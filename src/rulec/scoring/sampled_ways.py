@@ -2,8 +2,7 @@
 
 What it was recorded to do, and steady accelerations, for as long as the scene goes on or for a
 short while, in ego's place across the road, or to the middle of its lane or of a lane beside it.
-These are within ego's bounds of motion, overlap no obstacle, and pass through a path of the graph's
-cells.
+These are within ego's bounds of motion, overlap no obstacle, and pass through the graph's cells.
 """
 
 from __future__ import annotations

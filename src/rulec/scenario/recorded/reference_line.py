@@ -163,7 +163,7 @@ class ReferenceLine:
         return tuple(found)
 
     def _nearest(self, places: Points, own: NDArray[intp], pieces: NDArray[intp]) -> Points:
-        """The coordinates of each place's nearest foot, of its ``own`` with each of ``pieces``."""
+        """The coordinates of each place's nearest foot; ``own`` (ascending) with ``pieces``."""
         ux, uy, x, y, lengths, first, change, arc, more = self._columns.take(pieces, axis=1)
         dx, dy = places[own, 0] - x, places[own, 1] - y
         along, across = dx * ux + dy * uy, ux * dy - uy * dx
@@ -173,9 +173,11 @@ class ReferenceLine:
         foot = part * lengths
         distance = np.sqrt(np.square(along - foot) + np.square(across))
         is_foot = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
-        nearest = np.lexsort((np.where(is_foot, distance + more, np.inf), own))
-        best = nearest[np.unique(own, return_index=True)[1]]
-        best = best[is_foot[best]]
+        away = np.where(is_foot, distance + more, np.inf)
+        begins = np.diff(own, prepend=-1).nonzero()[0]
+        least = np.minimum.reduceat(away, begins).repeat(np.diff(begins, append=len(own)))
+        nearest = ((away == least) & is_foot).nonzero()[0]
+        best = nearest[np.diff(own[nearest], prepend=-1).nonzero()[0]]
         coordinates = np.full((len(places), 2), np.nan)
         coordinates[own[best], 0] = (arc + foot)[best]
         coordinates[own[best], 1] = np.copysign(distance, across)[best]
